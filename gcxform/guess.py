@@ -100,8 +100,9 @@ def guess_dialect(
     kin = {name for name in tried if tried[name].kin in known}
     look = _Looks(source, head, tried)
     look.at(tried.keys() - kin)
-    if look.anything_against() or any(name.encode() in head.lower() for name in kin):
-        look.at(kin)
+    named = {name for name in kin if name.encode() in head.lower()}
+    fits = look.scores().keys() if look.anything_against() else ()
+    look.at(named | {name for name in kin if tried[name].kin in fits})
     scores = look.scores()
     others = max((score for name, score in scores.items() if name not in kin), default=-np.inf)
     near = [n for n in scores if n not in kin or scores[n] >= others + ALIKE]

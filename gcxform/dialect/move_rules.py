@@ -19,6 +19,7 @@ class ArcRule:
     turns     the word that counts the turns of an arc (n - 1 full turns beyond the arc itself)
     circle_needs_axis_word   whether a full circle has to name an axis of its plane
     drops_third   a centre word along the normal of the plane is dropped, beside one in the plane
+    centres_open  how I, J and K count is a setting of the control, until G90.1 or G91.1 says it
     """
 
     absolute: float = 0.01
@@ -31,6 +32,7 @@ class ArcRule:
     turns: str = ""
     circle_needs_axis_word: bool = False
     drops_third: bool = False
+    centres_open: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,9 @@ class MotionRule:
     rounds_corners    corners are rounded where no path mode is stated, as they are in G64
     cycles_stop       the moves of a cycle end exactly, also where G64 rounds corners: G61 is in
                       force in its block, and behind it G64 as it was stated
+    extruder          which codes say whether E is a distance: "own", M82 and M83 alone; "last", the
+                      last of them and of G90 and G91; "either", M83 or G91; "" where firmware
+                      differs, and what they disagree on is refused
     """
 
     lone_codes_count: bool = False
@@ -80,3 +85,4 @@ class MotionRule:
     g53_is_rapid: bool = False
     rounds_corners: bool = False
     cycles_stop: bool = False
+    extruder: str = ""

@@ -6,7 +6,7 @@ import numpy as np
 
 from gcxform.catalogue.offers import leave_out_block, put_before
 from gcxform.diagnostics import InputError
-from gcxform.dialect.dialect import LINEAR
+from gcxform.dialect.dialect import EXTRUDER, LINEAR
 from gcxform.emit.converting import convertible
 from gcxform.emit.depending import Depending
 from gcxform.emit.manner import Believed, Task
@@ -72,6 +72,7 @@ class Copying:
         self.same = SameRows(self.path, self.original, positions)
         self.lines = (old_count == 0) & (pieces.count == 0) & ~pieces.expanded_line
         stands, converted, self.exact = self._standing(old_count, pieces, stated)
+        self._refuse_extrusion()
         self._refuse_changed(stands, pieces, stated)
         depending = Depending(task, positions, believed, self.same, self.exact)
         depending.check()
@@ -93,6 +94,17 @@ class Copying:
         self._refuse_unknown()
         self._refuse_polar()
         self._refuse_perhaps(stated, pieces)
+
+    def _refuse_extrusion(self) -> None:
+        """Refuse another distance mode where it decides what words of an extruder count."""
+        rule, blocks = self.task.manner.target.motion_rule.extruder, self.path.blocks
+        if rule in ("", "own") or EXTRUDER not in self.path.axes:
+            return
+        now, before = blocks.incremental, self.task.read.modes.incremental
+        for line in np.flatnonzero(now != before)[:1].tolist():
+            hint = "leave out the pass that would change it, or let the CAM write it so"
+            message = "G90 and G91 say what E counts here, so that neither can become the other"
+            raise InputError.one("GX506", message, self.task.location(line), hint)
 
     def _refuse_changed(self, stands: Flags, pieces: Pieces, stated: Stated) -> None:
         """Refuse blocks that move in a way of their own and would have to move otherwise.

@@ -188,11 +188,7 @@ def other_in(
 ) -> str:
     """Return what the target cannot say, if a G code means something else there, or nothing."""
     other = target.codes.get(name)
-    if other is None or (other.group, other.effect, other.act) != (
-        code.group,
-        code.effect,
-        code.act,
-    ):
+    if other is None or _what(other) != _what(code):
         return name
     words = _words_of(meaning) if code.effect is Effect.FRAME else {*code.takes, *other.takes}
     if words & (set(code.takes) ^ set(other.takes)):
@@ -206,6 +202,11 @@ def other_in(
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
     return ""
+
+
+def _what(code: Code) -> tuple[str, Effect, str, str]:
+    """Return what a code is; of one that is kept the reason too: it may be its control's own."""
+    return code.group, code.effect, code.act, code.reason if code.effect is Effect.INERT else ""
 
 
 def _words_of(meaning: Meaning) -> set[str]:

@@ -114,7 +114,7 @@ class Believed:
             NUMBER[initial["motion"]],
             NUMBER[initial["units"]],
             NUMBER[initial["distance"]],
-            NUMBER[initial["arc-distance"]],
+            -1 if manner.target.arc_rule.centres_open else NUMBER[initial["arc-distance"]],
             NUMBER[initial["feed-mode"]],
             stands=position.copy(),
         )

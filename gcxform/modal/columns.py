@@ -33,15 +33,15 @@ def with_increments(value: Floats, placed: Flags, incremental: Flags, before: fl
 
 
 def extruded(
-    own: Small, said: Flags, distance: Small, stated: Flags, memory: dict[str, int]
+    rule: str, own: Small, said: Flags, distance: Small, stated: Flags, memory: dict[str, int]
 ) -> Small:
     """Return whether words of an extruder are distances: 1, 0, or -1 where that is not known.
 
     `own` is M83, as `said` by it or M82, and `distance` G91, as `stated` by it or G90; the last of
-    both goes on in `memory`. Marlin and Smoothie take that; Prusa and RepRapFirmware M82 and M83
-    alone; Klipper takes M83 or G91.
+    both goes on in `memory`. `rule` is `MotionRule.extruder`.
     """
     last = fill(np.where(said, own, distance), said | stated, memory["extruded"])
     if len(last):
         memory["extruded"] = int(last[-1])
-    return np.where((last == own) & (own >= distance), own, np.int8(-1))
+    by = {"own": own, "last": last, "either": np.maximum(own, distance)}
+    return by[rule] if rule else np.where((last == own) & (own >= distance), own, np.int8(-1))

@@ -272,7 +272,8 @@ class Lines:
         if EXTRUDER not in self.dialect.axes:
             return distance
         own, said = self.remembered("extrusion"), self.stated("extrusion")
-        return extruded(own, said, distance, self.stated("distance"), self.state.memory)
+        stated, rule = self.stated("distance"), self.dialect.motion_rule.extruder
+        return extruded(rule, own, said, distance, stated, self.state.memory)
 
     def _without_splines(self, motion: Small) -> Small:
         """Return the motion code in force on each line: a spline's is that of its own block alone.

@@ -156,10 +156,18 @@ def _here(dialect: type[Dialect], fact: Fact) -> str:
             word = _code_here(dialect, word)
             if not word:
                 return ""
-        elif word.startswith("P") and words[-1] == "G30" and "P" not in dialect.codes["G30"].takes:
+        elif _lacks(dialect, word, words):
             return ""
         words.append(word)
     return " ".join(words).replace(" \n ", "\n")
+
+
+def _lacks(dialect: type[Dialect], word: str, before: list[str]) -> bool:
+    """Whether a dialect has no use for a word: a radius, or a P behind G30."""
+    if word.startswith("R"):
+        return "R" not in dialect.block_rule.words
+    home = word.startswith("P") and before[-1:] == ["G30"]
+    return home and "P" not in dialect.codes["G30"].takes
 
 
 def _code_here(dialect: type[Dialect], name: str) -> str:

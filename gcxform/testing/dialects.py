@@ -188,9 +188,10 @@ def _check_m_code(dialect: type[Dialect], number: int) -> None:
 
 
 def program(dialect: type[Dialect]) -> str:
-    """Return a small program of what a dialect has, in millimetres and absolute."""
+    """Return a small program of what a dialect has, absolute and in the unit it starts in."""
     has = dialect.codes
-    modes = [code for code in ("G21", "G90", "G94", "G17") if code in has]
+    modes = [code for code in (dialect.initial["units"], "G90", "G94", "G17") if code in has]
+    modes += ["G91.1"] * dialect.arc_rule.centres_open
     lines = [" ".join(modes), "G0 X10. Y20. Z5."]
     if 3 in dialect.m_codes and "S" in dialect.block_rule.words:
         lines.append("S1000 M3")

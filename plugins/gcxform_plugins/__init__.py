@@ -8,6 +8,7 @@ import gcxform as gx
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
     """Return one class for each controller family."""
+    from gcxform_plugins.dialects.controls import industrial, pc, printers
     from gcxform_plugins.dialects.controls.grbls import FluidNC, GrblHAL
     from gcxform_plugins.dialects.fagor.dialect import Fagor
     from gcxform_plugins.dialects.fanuc import Fanuc
@@ -18,8 +19,20 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     from gcxform_plugins.dialects.marlin import Marlin
     from gcxform_plugins.dialects.siemens.dialect import Siemens
 
-    old = [Fagor, Fanuc, Grbl, Haas, Heidenhain, LinuxCNC, Marlin, Siemens]
-    return [*old, FluidNC, GrblHAL]
+    grown: list[type[gx.Dialect]] = [
+        Fagor,
+        Fanuc,
+        Grbl,
+        Haas,
+        Heidenhain,
+        LinuxCNC,
+        Marlin,
+        Siemens,
+    ]
+    grown += [FluidNC, GrblHAL, pc.Centroid, pc.Mach3, pc.Mach4, pc.Masso, pc.Uccnc]
+    grown += [industrial.Brother, industrial.Gsk, industrial.Hurco, industrial.Mazak]
+    grown += [industrial.Mitsubishi, industrial.Okuma]
+    return [*grown, printers.Klipper, printers.Prusa, printers.Rrf, printers.Smoothieware]
 
 
 @gx.hookimpl

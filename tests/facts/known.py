@@ -9,6 +9,15 @@ KNOWN = {
     "both (MD20150); with G0 and F before, tests/test_siemens.py reads it as the fact says",
     "siemens_and_eq_precedence": "it asks for a refusal, for the manual's reading is rarely meant; "
     "the jump stays as it stands, and both ways of it are carried",
+    "klipper_g92_bare_zeroes": "G92 alone is refused: firmware differs in what it sets",
+    "prusa_g92_bare_nothing": "G92 alone is refused: firmware differs in what it sets",
+    "rrf_r_beats_ij": "an arc with R and a centre is refused in every dialect",
+    "smoothie_g4_p_plus_s": "a dwell with two times is refused in every dialect",
+    "mach3_dwell_unit_setting": "in its own control G4 stays as it stands, whatever P counts; "
+    "tests/test_more_controls.py asks that no other control is given it",
+    "okuma_dwell_unit_setting": "as mach3_dwell_unit_setting, of F",
+    "okuma_g71_m53_return": "cycles of an Okuma are refused by name",
+    "okuma_word_expression": "variables of an Okuma are refused",
     "marlin_g61_returns": "G60 and G61, a place that firmware stores, are refused by name",
     "marlin_g90_cancels_m83": "firmware differs in whether G90 makes E absolute: it is asked for",
     "marlin_m200_volume": "M200, E as a volume, is refused by name",

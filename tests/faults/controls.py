@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 TABLES = "plugins/gcxform_plugins/dialects/controls"
+TWO = "tests/test_more_controls.py"
 CASE = "tests/test_corpus.py::test_case[dialects/controls/{}]"
 
 
@@ -23,6 +24,76 @@ MUTATIONS = (
     _table("grblhal-more-than-grbl", "turns are not counted", 'turns="P"', 'turns=""'),
     _table("grblhal-refused", "a switch is taken for off", 'delete=""', 'delete="execute"'),
     _table("grblhal-more-than-grbl", "G49 takes axes", "g49_takes_axes=False, ", ""),
+    Mutation(
+        "controls: a Mach3 counts centres as others",
+        f"{TABLES}/pc.py",
+        "in_inch=2.54, centres_open=True",
+        "in_inch=2.54",
+        TWO,
+    ),
+    Mutation(
+        "controls: a control is not told how centres count",
+        "gcxform/emit/manner.py",
+        "-1 if manner.target.arc_rule.centres_open else NUMBER",
+        "NUMBER",
+        TWO,
+    ),
+    Mutation(
+        "controls: a dwell of an open unit is that of others",
+        "gcxform/emit/expressible.py",
+        'code.reason if code.effect is Effect.INERT else ""',
+        '""',
+        TWO,
+    ),
+    Mutation(
+        "controls: G4 with two times takes the first",
+        "gcxform/modal/meaning/sorting.py",
+        "elif taken[1:]:",
+        "elif False:",
+        CASE.format("two-times"),
+    ),
+    Mutation(
+        "controls: E is left as G90 makes it",
+        "gcxform/modal/columns.py",
+        '"last": last,',
+        '"last": own,',
+        TWO,
+    ),
+    Mutation(
+        "controls: E of a Klipper is a position in G91",
+        "gcxform/modal/columns.py",
+        "np.maximum(own, distance)",
+        "own",
+        TWO,
+    ),
+    Mutation(
+        "controls: G91 becomes G90 where it says what E counts",
+        "gcxform/emit/copying.py",
+        'if rule in ("", "own") or EXTRUDER',
+        "if True or EXTRUDER",
+        CASE.format("klipper-not-absolute"),
+    ),
+    _table(
+        "printers-no-radius",
+        "a Klipper hears a radius",
+        "words=NO_R)\n    codes",
+        "words=NO_R + 'R')\n    codes",
+        "printers",
+    ),
+    Mutation(
+        "controls: a Centroid starts in mm",
+        f"{TABLES}/pc.py",
+        '"units": "G20"',
+        '"units": "G21"',
+        TWO,
+    ),
+    Mutation(
+        "controls: a UCCNC waits in seconds",
+        f"{TABLES}/pc.py",
+        'dwell={"P": 0.001}',
+        'dwell={"P": 1.0}',
+        TWO,
+    ),
     Mutation(
         "controls: a dialect is named beside its kin",
         "gcxform/guess.py",

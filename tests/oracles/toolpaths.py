@@ -90,7 +90,7 @@ def moves_of(path: Toolpath) -> Iterator[Move]:
 
 
 def _known(axes: str, at: list[float]) -> dict[str, float]:
-    return {a: v for a, v in zip(axes, at, strict=True) if v == v and a in "XYZABC"}
+    return {a: v for a, v in zip(axes, at, strict=True) if v == v and a in "XYZABCE"}
 
 
 def events_of(path: Toolpath) -> list[tuple[int, str, int]]:

@@ -221,6 +221,8 @@ def _g_effects(
             meaning.dwell = True
             if not taken:
                 yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
+            elif taken[1:]:
+                yield Refusal("GX203", owners[group].start, 2, f"{name} has two times")
             meaning.events.append(EventShape(50, "DWELL", taken))
         else:
             meaning.events.append(EventShape(60, name, taken, code.after))

@@ -25,6 +25,7 @@ from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.nurbs import Nurbs
+from gcxform.modal.moves.open_centres import refuse_open_centres
 from gcxform.modal.moves.printers import SAY_MOTION, UNMOVED, refuse_unheard
 from gcxform.modal.moves.rows import Own, Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
@@ -68,6 +69,7 @@ class Moves:
         self.nurbs.check()
         moving = self._moving()
         refuse_unheard(self.track, moving)
+        refuse_open_centres(self.lines, self.modes)
         self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)

@@ -1,11 +1,9 @@
-"""More controls, each a table in a module of its own, written by the guide for dialects alone."""
+"""A control that gcxform has not, as a table in a module of its own, written by the guide alone."""
 
 import gcxform as gx
-from gcxform_controls.fanuc_like import Brother, Mazak, Mitsubishi
-from gcxform_controls.mach3 import Mach3
-from gcxform_controls.okuma import Okuma
+from gcxform_controls.carbide import Carbide
 
 
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
-    return [Okuma, Mach3, Mazak, Mitsubishi, Brother]
+    return [Carbide]

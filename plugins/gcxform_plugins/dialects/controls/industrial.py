@@ -1,0 +1,146 @@
+"""Industrial controls, by what published post-processors for them write.
+
+| control | what its relative Fanuc does not |
+|---|---|
+| Mazak EIA | P of G4 in ms; G5 P2, P0 smooth; G54.1 P1 to P48; pecks pull back by parameter F12 |
+| Mitsubishi M700 | P of G4 in ms; M88 is coolant through the tool |
+| Brother C00 | P of G4 in s, with a point; G54.1 P1 to P300; M494, M495: coolant through the tool |
+| | G100 changes the tool and moves, G77 and G78 tap: refused |
+| Hurco ISNC | P of G4 in s; cycles, G2.4 and G3.4 (arcs in space), G54.1, G5: refused |
+| GSK | P of G4 in ms; M88 as Mitsubishi; no G54.1 |
+
+| what | Okuma OSP, milling | known from |
+|---|---|---|
+| work offset | `G15 Hn`; G54 to G59 are lengths of axes: not read | post (2026) |
+| tool length | `G56 Hn`, ended by G53 | post |
+| G16 H, G28, G30 P | for one block in the machine; home positions 1 to 32: refused | post |
+| G4 F | its unit is a setting of the machine: it stays | a note in the post |
+| G71 Z, G73 to G89 | cycles with levels of their own: refused | post |
+| `X=VC1+10`, `VC1=5`, IF, GOTO, CALL, NOEX | refused | programs |
+| centre of an arc | incremental | post |
+| end | M2 | post |
+| coolant | M7 mist, M8 flood, M9 off, M50 through the tool, M51, M59 air | post |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.fanuc import Fanuc
+
+CHANGE = "it changes the tool and moves, in an order that is not known"
+LEVELS = "its levels are those of G71, M53 and M54"
+HERE = "it goes to a place of the machine for its block"
+GONE = ("G4", "G49", *(f"G{n}" for n in range(54, 60)))
+HURCO_GONE = ("G54.1", "G54.2", "G54.4", "G5", "G5.1", "G8")
+SPACE = "it cuts an arc in space"
+
+
+class Mazak(Fanuc):
+    """Mazak EIA/ISO (Matrix, Smooth), as posts write for it."""
+
+    name = "mazak"
+    kin = "fanuc"
+    point_rule = replace(Fanuc.point_rule, dwell={"X": 1.0, "P": 0.001})
+
+
+class Mitsubishi(Fanuc):
+    """Mitsubishi M700, M70 and M80 (MELDAS), as posts write for it."""
+
+    name = "mitsubishi"
+    kin = "fanuc"
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
+
+
+class Gsk(Mitsubishi):
+    """GSK, milling, as a post writes for it."""
+
+    name = "gsk"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        name: code for name, code in Fanuc.codes.items() if name not in ("G54.1", "G54.2", "G54.4")
+    }
+    offset_rule = replace(Fanuc.offset_rule, g10_l20="")
+
+
+class Brother(Fanuc):
+    """Brother CNC-C00 and D00 (Speedio), as posts write for it."""
+
+    name = "brother"
+    kin = "fanuc"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Fanuc.codes,
+        "G100": v.barrier("non-modal", CHANGE, "THSD"),
+        **{code: v.barrier("cycle", v.SYNCHRONISED, "IJLRQ") for code in ("G77", "G78")},
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **Fanuc.m_codes,
+        494: gx.MCode("coolant"),
+        495: gx.MCode("coolant", after=True),
+    }
+    point_rule = replace(Fanuc.point_rule, dwell={"P": 1.0})
+    differs: ClassVar[Mapping[str, str]] = {
+        "point_rule.dwell": "P is in seconds, with a point (post)"
+    }
+
+
+class Hurco(Fanuc):
+    """Hurco ISNC; BNC, whose cycles count distances, is refused by its codes."""
+
+    name = "hurco"
+    kin = "fanuc"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{name: code for name, code in Fanuc.codes.items() if name not in HURCO_GONE},
+        **{
+            name: v.barrier("cycle", v.CYCLE, "PQRIJKL")
+            for name, code in Fanuc.codes.items()
+            if code.group == "cycle" and name != "G80"
+        },
+        **{code: v.barrier("motion", SPACE, "IJK") for code in ("G2.4", "G3.4")},
+    }
+    point_rule = replace(Fanuc.point_rule, dwell={"P": 1.0})
+    offset_rule = replace(Fanuc.offset_rule, g10_l20="")
+    differs: ClassVar[Mapping[str, str]] = {"point_rule.dwell": "P is in seconds (post)"}
+
+
+class Okuma(gx.Dialect):
+    """Okuma OSP mill, as posts write for it."""
+
+    name = "okuma"
+    kin = "fanuc"
+    axes = "XYZABC"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{name: code for name, code in v.ISO.items() if name not in GONE},
+        "G4": v.inert("non-modal", "F"),
+        "G15": v.frame("frame", "work", "H"),
+        "G16": v.barrier("non-modal", HERE, "H"),
+        **{code: v.barrier("non-modal", v.HOME, "P") for code in ("G28", "G30")},
+        "G56": v.frame("tool-length", "length", "H"),
+        "G53": v.frame("tool-length", "no-length"),
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        "G61": v.inert("path", act="exact-stop"),
+        "G64": v.inert("path", act="blend"),
+        "G95": gx.Code("feed-mode"),
+        **{f"G{n}": v.barrier("cycle", LEVELS, "PQRIJK") for n in (71, 73, 74, 76, *range(81, 90))},
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", loses_position=True, act="change-tool"),
+        **{code: gx.MCode("coolant") for code in (50, 51, 59)},
+    }
+    initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "frame": "G15 H1"}
+    differs: ClassVar[Mapping[str, str]] = {
+        "G4": "what F counts is a setting of the machine (note in a post)",
+        "G15": "H says which work offset (post of 2026)",
+        "G53": "it ends a tool length (post of 2014)",
+        "G56": "H says which tool length (post of 2014)",
+        "initial": "the work offset has a number in H",
+        "offset_rule.g10_offsets": "there is no G10",
+    }
+    block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True))
+    point_rule = gx.PointRule(required=True)
+    cutter_comp = gx.CutterComp(stored=True)
+    offset_rule = gx.OffsetRule(g10_offsets=())

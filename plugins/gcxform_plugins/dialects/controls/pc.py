@@ -1,0 +1,159 @@
+"""Controls on a PC, milling: Mach3, Mach4, UCCNC, Masso, Centroid.
+
+*Post*: what published post-processors write (Autodesk's and FreeCAD's); *page*: the maker's own
+page. What is only recalled is refused, or a setting.
+
+| what | Mach3, Mach4 | UCCNC | Masso | Centroid CNC12 |
+|---|---|---|---|---|
+| I, J, K | a setting, until G90.1 or G91.1 (post) | from the start (post) | as UCCNC | as UCCNC |
+| G4 P | seconds or ms, a setting: it stays | ms (post) | a setting: it stays | s (manual) |
+| units at start | taken as G21 | taken as G21: posts write none | G21 | G20 (manual) |
+| G28.1 | moves to the switches: refused | refused | refused | refused |
+| G70, G71 | units: refused | refused | refused | refused |
+| turning, scaling, mirrors | refused | refused | refused | refused |
+| cycles, G12, G13 | steps are not known: refused | also G33.1, G33.2 | refused | also G74 |
+| more than six offsets | G59 P (post of Mach4): refused | none | none | none |
+| M6, other M codes | run a macro that may move | as Mach3 | as Mach3 | as Mach3 |
+| M98, G65 | refused | refused | M98 calls a file (page): refused | files: refused |
+| comments | `(`; Mach4 also `;`; `(MSG,` shows | `(` | `(` | `;` |
+| G64 | blends | not known: refused | refused | G64 alone |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+
+SWITCHES = "it moves to the switches"
+UNIT = "it changes the unit on some controls, and cuts on others"
+POCKET = "it cuts a pocket in a way of its own"
+SEMICOLON = ("gcxform_grammars", "centroid")
+COMP = {code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")}
+UNIT_OPEN = "a setting says what P counts"
+DWELL_UNIT = "P counts seconds or milliseconds, as a setting says (post): it stays as it is"
+
+
+def open_dwell(name: str) -> gx.Code:
+    """Return a dwell that stays as it is, and on no other control is the same."""
+    return replace(v.inert("non-modal", "P"), reason=f"{UNIT_OPEN} of {name}")
+
+
+def cycles(*numbers: int) -> Mapping[str, gx.Code]:
+    """Return canned cycles, refused by name."""
+    return {f"G{n}": v.barrier("motion", v.CYCLE, "PQRLIJK") for n in numbers}
+
+
+class Mach3(gx.Dialect):
+    """Mach3 mill, as posts write for it."""
+
+    name = "mach3"
+    kin = "linuxcnc"
+    axes = "XYZABC"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **v.ISO,
+        **cycles(73, 76, 81, 82, 83, 84, 85, 86, 88, 89),
+        **COMP,
+        **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
+        **{code: v.inert("retract") for code in ("G98", "G99")},
+        **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
+        **{code: v.barrier("non-modal", UNIT) for code in ("G70", "G71")},
+        **{code: v.barrier("non-modal", POCKET, "I") for code in ("G12", "G13")},
+        **{code: v.barrier("non-modal", v.TRANSFORM) for code in ("G15", "G16", "G50", "G51")},
+        **{code: v.barrier("non-modal", v.TRANSFORM, "RI") for code in ("G68", "G69")},
+        "G4": open_dwell("Mach3"),
+        "G95": gx.Code("feed-mode"),
+        "G61": v.inert("path", act="exact-stop"),
+        "G64": v.inert("path", act="blend"),
+        "G10": v.frame("non-modal", "set-work", "XYZABCLP"),
+        "G52": v.frame("non-modal", "local", "XYZABC"),
+        "G92": v.frame("non-modal", "preset", "XYZABC"),
+        "G92.1": v.frame("non-modal", "preset-clear"),
+        "G28.1": v.barrier("non-modal", SWITCHES),
+        "G31": v.barrier("non-modal", v.PROBE),
+        "G53": v.frame("non-modal", "machine"),
+        "G43": v.frame("tool-length", "length", "H"),
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **v.ISO_M,
+        6: gx.MCode("tool", loses_position=True, act="change-tool"),
+        **{code: gx.MCode("override") for code in (48, 49)},
+        98: gx.MCode("stop", after=True, barrier=v.CALL, takes="PQL"),
+        99: gx.MCode("stop", after=True, barrier=v.CALL),
+    }
+    settings: ClassVar[tuple[gx.Setting, ...]] = (
+        gx.Setting("arc-centres", "how I, J and K count (IJ Mode)", ("incremental",)),
+    )
+    differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT}
+    text_rule = gx.TextRule(active_comments=("MSG,",), telling_comments=("MSG,",))
+    block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True, takes="PQS"))
+    arc_rule = gx.ArcRule(absolute=0.002, in_inch=2.54, centres_open=True)
+
+
+class Mach4(Mach3):
+    """Mach4 mill, as posts write for it."""
+
+    name = "mach4"
+    grammar = SEMICOLON
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Mach3.codes,
+        "G4": open_dwell("Mach4"),
+        "G65": v.barrier("non-modal", v.CALL, "ABCDEFHIJKLMPQRSTXYZ"),
+        "G54.1": v.barrier("frame", "posts for it write G59 P", "P"),
+    }
+    text_rule = replace(Mach3.text_rule, comments="(;")
+
+
+class Uccnc(Mach3):
+    """UCCNC, as posts write for it."""
+
+    name = "uccnc"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{name: code for name, code in Mach3.codes.items() if name not in ("G64", "G84")},
+        **{code: v.barrier("motion", v.SYNCHRONISED, "KQ") for code in ("G33.1", "G33.2")},
+        "G4": v.ISO["G4"],
+    }
+    chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("G2", "G3"), "I, J and K count from the start of the arc, but after G90.1"
+    )
+    differs: ClassVar[Mapping[str, str]] = {"point_rule.dwell": "P of G4 is in ms (post)"}
+    settings = ()
+    text_rule = gx.TextRule()
+    point_rule = gx.PointRule(dwell={"P": 0.001})
+    arc_rule = gx.ArcRule(absolute=0.002)
+
+
+class Masso(Uccnc):
+    """Masso G3, as posts write for it."""
+
+    name = "masso"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
+        "G4": open_dwell("Masso"),
+        "G84": v.barrier("motion", v.CYCLE, "PQRL"),
+    }
+    differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT, **Uccnc.differs}
+
+
+class Centroid(Uccnc):
+    """Centroid CNC12, milling."""
+
+    name = "centroid"
+    grammar = SEMICOLON
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
+        **cycles(74, 84),
+        "G30": v.frame("non-modal", "home", "P"),
+        "G64": v.inert("path", act="blend"),
+        "G65": v.barrier("non-modal", v.CALL, "ABCDEFHIJKLMPQRSTXYZ"),
+    }
+    initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "units": "G20"}
+    differs: ClassVar[Mapping[str, str]] = {
+        "initial": "a program starts in G20 (list of Centroid's modal groups)",
+        "point_rule.dwell": "P of G4 is in seconds (manual)",
+    }
+    text_rule = gx.TextRule(comments=";")
+    point_rule = gx.PointRule()

@@ -1,0 +1,91 @@
+"""Printers by their firmware: what is certain where `marlin`, which reads them all, must refuse.
+
+| what | RepRapFirmware 3 | Klipper | Prusa 8-bit | Smoothie |
+|---|---|---|---|---|
+| E is a distance | by M83 | by M83 or G91 | by M83 | by the last of M83, M82, G90, G91 |
+| G4 | P in ms, S in s | P in ms | as RepRapFirmware | P and S are added |
+| G10, G11 | may lift Z: refused | a retraction without Z: kept | refused | refused |
+| G92 alone | refused | refused: it sets all axes | refused | refused |
+| arcs in XY | by I and J, or R | by I and J | by I and J | by I and J |
+| small letters | as capitals | as capitals | as capitals | a shell command: refused |
+| other words on a line | refused | `NAME=...`: refused | refused | refused |
+
+Sources: `gcode_move.py`, `gcode_arcs.py`, `firmware_retraction.py` of Klipper, as executed;
+RepRapFirmware 3.5, Prusa-Firmware and Smoothieware, as read. How fine arcs are cut is not known.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import ClassVar
+
+import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.marlin import Marlin
+
+NO_R = Marlin.block_rule.words.replace("R", "")
+M_WITHOUT_R: Mapping[int, gx.MCode] = {
+    number: replace(code, takes=code.takes.replace("R", ""))
+    for number, code in Marlin.m_codes.items()
+}
+"""R is no radius here, and no other word: an arc by one would not be cut."""
+LIFTS = "it retracts, and lifts Z where the printer is set so"
+
+
+class Rrf(Marlin):
+    """RepRapFirmware 3, as a printer."""
+
+    name = "rrf"
+    kin = "marlin"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Marlin.codes,
+        **{code: v.barrier("non-modal", LIFTS, "XYZPRSL") for code in ("G10", "G11")},
+        **{code: v.barrier("rotation", v.TRANSFORM, "XYRI") for code in ("G68", "G69")},
+    }
+    text_rule = replace(Marlin.text_rule, comments=";")
+    block_rule = replace(Marlin.block_rule, words="FIJKLPRSBQ")
+    motion_rule = replace(Marlin.motion_rule, extruder="own")
+
+
+class Prusa(Marlin):
+    """Prusa's 8-bit firmware, of MK2 and MK3."""
+
+    name = "prusa"
+    kin = "marlin"
+    m_codes = M_WITHOUT_R
+    block_rule = replace(Marlin.block_rule, words=NO_R)
+    motion_rule = replace(Marlin.motion_rule, extruder="own")
+
+
+class Klipper(Marlin):
+    """Klipper."""
+
+    name = "klipper"
+    kin = "marlin"
+    m_codes = M_WITHOUT_R
+    block_rule = replace(Marlin.block_rule, words=NO_R)
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Marlin.codes,
+        **{code: v.inert("retraction") for code in ("G10", "G11")},
+    }
+    differs: ClassVar[Mapping[str, str]] = {
+        **Marlin.differs,
+        "G10": "it retracts (firmware_retraction.py)",
+        "G11": "it retracts (firmware_retraction.py)",
+    }
+    text_rule = replace(Marlin.text_rule, comments=";")
+    point_rule = gx.PointRule(dwell={"P": 0.001})
+    motion_rule = replace(Marlin.motion_rule, extruder="either")
+
+
+class Smoothieware(Marlin):
+    """Smoothieware, as a printer."""
+
+    name = "smoothieware"
+    kin = "marlin"
+    grammar = ("gcxform_grammars", "smoothieware")
+    m_codes = M_WITHOUT_R
+    block_rule = replace(Marlin.block_rule, words=NO_R)
+    text_rule = replace(Marlin.text_rule, comments=";", lower_case=False)
+    motion_rule = replace(Marlin.motion_rule, extruder="last")
