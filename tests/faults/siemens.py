@@ -22,12 +22,34 @@ ARITHMETIC = "plugins/gcxform_plugins/dialects/siemens/arithmetic.py"
 RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
 CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
+POLAR = "plugins/gcxform_plugins/dialects/siemens/polar.py"
 LINES = "plugins/gcxform_plugins/dialects/siemens/lines.py"
 SPELLED = "gcxform/proof/spelled_out.py"
 WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
 MUTATIONS = (
+    Mutation(
+        "siemens: polar angles count from the second axis",
+        POLAR,
+        "return float(radius) * math.cos(at), float(radius) * math.sin(at)",
+        "return float(radius) * math.sin(at), float(radius) * math.cos(at)",
+        f"{CASES}[dialects/siemens/polar]",
+    ),
+    Mutation(
+        "siemens: G112 counts from zero",
+        POLAR,
+        "            return self._pole(item)\n",
+        "            return 0.0, 0.0\n",
+        f"{CASES}[dialects/siemens/polar]",
+    ),
+    Mutation(
+        "siemens: a pole stays where another zero begins",
+        FRAMING,
+        "        self.lose_pole()\n",
+        "",
+        f"{CASES}[dialects/siemens/polar-refused]",
+    ),
     Mutation(
         "siemens written: TURN counts the arc as well",
         LINES,

@@ -76,6 +76,9 @@ class Blocks(Framing):
             return
         if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
             self.refuse("this stands in a block of its own", line.alone, "give it its own line")
+        if line.pole is not None:
+            self.set_pole(line)
+            return
         if line.dwell is not None or line.act is not None or line.cycle is not None:
             yield from self._alone(line)
             return
@@ -185,6 +188,7 @@ class Blocks(Framing):
         """Take another work offset."""
         if name != self.work and (self.work or self.place.moved):
             self.place.lose(LINEAR + ROTARY)
+            self.lose_pole()
         self.work = name
 
     def _in_machine(self, line: Line) -> str:

@@ -21,6 +21,8 @@ stands, with all that is lost behind it.
 | `CR=` | positive for the arc up to half a turn, negative for the longer | OM 579 |
 | `AR=` | the opening angle, beside the end or the centre | PM 204 |
 | `TURN=n` | n full turns before the arc; of a full circle: refused | PM 205 |
+| G110, G111, G112 | the pole, from the last place, from zero, from the pole; else zero | F 118 |
+| `AP=`, `RP=` | angle, radius; the pole is the centre of arcs; in G91: refused | 808D 55 |
 | `CIP` | an arc over a point; refused in G91, and outside of the plane in force | T 91 |
 | `CT` | refused | |
 | start and end radius | may differ by 0.01 mm (MD21000) | [K] |
@@ -91,10 +93,10 @@ stands, with all that is lost behind it.
 | G291 | ISO dialects: refused | PM |
 
 Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programming 12/2019
-(6FC5398-2EP40-0BA0), 808D Programming 01/2014 (6FC5398-4DP10-0BA1), OM Operating 05/2017, T Turning
-01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling 04/2007, W1 Tool offset 11/2006, TR
-Transformations 06/2019 (A5E47435470B), R2 Axes and spindles 06/2019 (A5E47437747B), SW Swivelling
-03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
+(6FC5398-2EP40-0BA0), F Fundamentals 11/2006, 808D Programming 01/2014 (6FC5398-4DP10-0BA1), OM
+Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling
+04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B), R2 Axes and spindles
+06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
 
 To the same control, by passes that keep positions, a line stays that cannot be said in blocks:
 

@@ -13,13 +13,13 @@ from decimal import Decimal
 from gcxform_plugins.dialects.siemens.arcs import CENTRES
 from gcxform_plugins.dialects.siemens.frames import NEAR, ONE, PLAIN, ZERO, Frame, frame_of
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, Line
-from gcxform_plugins.dialects.siemens.moves import Moves
 from gcxform_plugins.dialects.siemens.place import LINEAR, PlaceError, text_of
+from gcxform_plugins.dialects.siemens.polar import Polar
 
 FINEST = Decimal("1e-9")
 
 
-class Framing(Moves):
+class Framing(Polar):
     """Follows the programmable frame."""
 
     def set_frame(self, line: Line) -> Iterator[str]:
@@ -43,6 +43,7 @@ class Framing(Moves):
         old = self.frame
         self.place.seen_anew(lambda point: made.inside(old.point(point)))
         self.frame, self.plainly = made, False
+        self.lose_pole()
         yield from ()
 
     def outside(self, steps: bool, words: Sequence[str]) -> list[str]:

@@ -22,7 +22,7 @@ class Line:
     motion    of this line: "0" to "3", "CIP", or nothing
     axes      way (nothing, AC, IC, DC, ACP, ACN), number and item by letter; centres, middles: the
               same of I J K, and I1 J1 K1
-    named     CR, TURN, AR: number and item
+    named     CR, TURN, AR, AP, RP: number and item
     others    S and M words
     alone     what stands for nothing, and in a block of its own
     act       what follows the tip, or stops: M128, M129
@@ -49,4 +49,5 @@ class Line:
     cycle: gx.Item | None = None
     alone: gx.Item | None = None
     modal: gx.Item | None = None
+    pole: tuple[str, gx.Item] | None = None
     groups: set[str] = field(default_factory=set)

@@ -67,7 +67,7 @@ FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres"),
     *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
-    *("fed", "feed_mode"),
+    *("fed", "feed_mode", "pole", "polar"),
 )
 
 
@@ -120,6 +120,7 @@ class Programs(Calls):
             return self._kept(items, why or self.kept_why, False)
         self.lose_set(self.line, self.line)
         self.lose_axes(effect)
+        self.lose_pole()
         if any(item.kind in ("named", "expression", "array") for item in items):
             self.assumed[UNDEFINED] = None
         return []
@@ -144,6 +145,7 @@ class Programs(Calls):
     def forget(self, lines: range) -> None:
         """Forget what lines may change that are executed again, each of them as before."""
         self.lose_set(lines.start, lines.stop - 1)
+        self.lose_pole()
         for line in lines:
             text, effect = self.lines[line], self.effect(self.lines[line])
             if effect is None:
@@ -168,6 +170,7 @@ class Programs(Calls):
         """Return the block of a line that stays as it stands."""
         if not items:
             return []
+        self.lose_pole()
         items, text = self._words_in(items), self.lines[self.line]
         if FROM_HERE.search(code(text).upper()):
             self.keep_rest(why)

@@ -219,6 +219,8 @@ class Statements(gx.Translator):
         if group == "plane":
             if self.drilling is not None and self.plane != PLANES[code]:
                 self.refuse("another plane under MCALL", item, "write MCALL before")
+            if self.plane != PLANES[code]:
+                self.lose_pole()
             self.plane = PLANES[code]
         if group == "comp" and code != "40":
             self._compensates(line, item, code)
@@ -238,6 +240,10 @@ class Statements(gx.Translator):
         self.comp = True
         line.codes.append(f"G{code} D{self.tool}")
 
+    def lose_pole(self) -> None:
+        """Forget the pole of polar coordinates."""
+        raise NotImplementedError
+
     @property
     def keeps_radii(self) -> bool:
         """Whether the frame of the program keeps sides and radii in the plane."""
@@ -256,6 +262,8 @@ class Statements(gx.Translator):
             line.codes.append("G64")
         elif code in ("71", "700", "710"):
             self._units(line, item, code)
+        elif code in ("110", "111", "112"):
+            line.pole = code, item
         elif code == "153":
             line.machine = item
         else:
@@ -271,6 +279,8 @@ class Statements(gx.Translator):
             self.refuse("other units in a frame of the program", item, "write TRANS before")
         if self.unit not in ("", unit) or unit == "G20":
             self.place.lose(LINEAR, shifted=False)
+        if self.unit not in ("", unit):
+            self.lose_pole()
         self.unit = unit
         line.codes.append(unit)
 
@@ -298,7 +308,7 @@ class Statements(gx.Translator):
 
     def _named(self, line: Line, item: gx.Item) -> None:
         name = item.name
-        if name in ("CR", "AR", "TURN", "RPL"):
+        if name in ("CR", "AR", "TURN", "RPL", "AP", "RP"):
             self._once(line, item, name)
             line.named[name] = (item.numbers[0], item)
         elif name not in TOLERANCES:
