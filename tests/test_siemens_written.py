@@ -77,7 +77,7 @@ def test_a_length_that_stays_in_force_is_said_before_the_next_move():
 
 
 WRONG = [
-    ("D1", "D0", "an end"),
+    ("D1", "D0", "the length of a tool"),
     ("G55", "G56", "a work offset, or a length"),
     ("M8", "M7", "M8 is M7"),
     ("SUPA G0 Z0 D0", "SUPA G0 Z5 D0", "a place in the machine"),

@@ -73,7 +73,8 @@ def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[t
         yield min(len(a), len(b)), f"{len(a)} moves are {len(b)}"
         return
     was, is_ = (np.array([f.tool for f in path.frames])[path.frame] for path in (a, b))
-    yield from _first(~_same(was, is_, 0.0).all(axis=1), LENGTH)
+    counts = _frames(a, dialect) != ""
+    yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
     yield from _first(~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")

@@ -156,7 +156,7 @@ MUTATIONS = (
     Mutation(
         "klartext: a length counts from where it is called",
         SPELLED,
-        "    yield from _first(~_same(was, is_, 0.0).all(axis=1), LENGTH)\n",
+        "    yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)\n",
         "",
         "tests/test_klartext_target.py::test_a_length_that_comes_later_is_refused_where_it_would_count",
     ),

@@ -30,6 +30,34 @@ COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_comp
 
 MUTATIONS = (
     Mutation(
+        "siemens: CYCLE89 comes out in rapid",
+        CYCLES,
+        'return (*_with_dwell(rest, at), ("1", at.start, ""))',
+        'return (*_with_dwell(rest, at), ("0", at.start, ""))',
+        f"{CASES}[dialects/siemens/cycles-of-steps]",
+    ),
+    Mutation(
+        "siemens: strokes of CYCLE83 count from the start",
+        CYCLES,
+        "end, top = Decimal(at.bottom), Decimal(at.plane)",
+        "end, top = Decimal(at.bottom), Decimal(at.start)",
+        f"{CASES}[dialects/siemens/pecks]",
+    ),
+    Mutation(
+        "siemens: HOLES1 begins at the end that is farther",
+        CYCLES,
+        "if len(places) > 1 and not ends[0] < ends[1] - CLEARLY:",
+        "if False:",
+        f"{CASES}[dialects/siemens/holes-from-either-end]",
+    ),
+    Mutation(
+        "siemens: the feed of CYCLE85 stays",
+        BLOCKS,
+        'self.said, self.feed_open = "0", hole.own_feed',
+        'self.said, self.feed_open = "0", False',
+        f"{CASES}[dialects/siemens/feed-behind-a-cycle]",
+    ),
+    Mutation(
         "siemens: polar angles count from the second axis",
         POLAR,
         "return float(radius) * math.cos(at), float(radius) * math.sin(at)",

@@ -18,12 +18,18 @@ from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 
+FEED = "write F in this block, or before"
 CHANGE = 6
 """M6, which moves no axis where `inert-m` of the machine file says so."""
 
 
 class Blocks(Framing):
-    """Turns the lines of a SINUMERIK into blocks of words."""
+    """Turns the lines of a SINUMERIK into blocks of words.
+
+    feed_open  a cycle with feeds of its own has been, and F has not been programmed again
+    """
+
+    feed_open = False
 
     grammar = ("gcxform_grammars", "siemens")
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
@@ -41,6 +47,7 @@ class Blocks(Framing):
         self._arrive()
         for item in items:
             self.read.get(item.kind, self.unread)(line, item)
+        self._check_feed(line)
         try:
             made = [block for block in self._made(line) if block]
         except PlaceError as error:
@@ -50,6 +57,14 @@ class Blocks(Framing):
         if made and line.number:
             made[0] = line.number + made[0]
         return made
+
+    def _check_feed(self, line: Line) -> None:
+        """Refuse a cut behind a cycle with feeds of its own, until F is programmed again."""
+        self.feed_open &= not line.feed or line.dwell is not None
+        cuts = (line.motion or self.motion) != "0" and line.alone is None and line.pole is None
+        if self.feed_open and cuts and (line.axes or line.centres or line.named):
+            message = "which feed is in force behind a cycle with its own is not known"
+            self.refuse(message, self.any_of(line), FEED)
 
     def _arrive(self) -> None:
         """Note the plain lines before this one."""
@@ -63,7 +78,7 @@ class Blocks(Framing):
             return False
         if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
             return False
-        if self.length_is_elsewhere or self.frame != Frame():
+        if self.feed_open or self.length_is_elsewhere or self.frame != Frame():
             return False
         if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
             return False
@@ -138,14 +153,19 @@ class Blocks(Framing):
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
         self.check_plane(None)
-        for k, (code, text) in enumerate(hole.steps()):
+        if self.feed_open and not hole.own_feed:
+            self.refuse(
+                "which feed is in force behind a cycle with its own is not known", None, FEED
+            )
+        for k, (code, text, feed) in enumerate(hole.steps):
             if code == "4":
                 yield f"G4 P{text}"
                 continue
             self.place.absolute(hole.axis, text)
             words = [f"G{code}", *self.outside(False, [hole.axis + text])]
+            words += [f"F{feed}"] if feed else []
             yield " ".join([*([] if k else self.distance_code(Line(), False)), *words])
-        self.said = "0"
+        self.said, self.feed_open = "0", hole.own_feed
 
     # --- tools ---
 

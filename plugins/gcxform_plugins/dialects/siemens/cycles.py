@@ -7,6 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from typing import NamedTuple
 
 import gcxform as gx
 
@@ -32,23 +33,21 @@ def arguments(call: gx.Item) -> tuple[str, list[str]]:
     return found[1], parts
 
 
+Steps = tuple[tuple[str, str, str], ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Drilling:
-    """A hole along the axis across the plane: levels and a dwell (s), as blocks have them."""
+    """A hole along the axis across the plane, as blocks have it.
+
+    steps     code, level and feed of each move at a place: 0 rapid, 1 at the feed, nothing for the
+              one in force; code 4 is a dwell, of seconds
+    own_feed  it has feeds of its own, and which is in force behind it is not known
+    """
 
     axis: str
-    start: str
-    bottom: str
-    back: str
-    dwell: str = ""
-
-    def steps(self) -> list[tuple[str, str]]:
-        """Return codes and levels at a place: rapid to the start, feed to the bottom, rapid back.
-
-        Code 4 is a dwell, of seconds.
-        """
-        wait = [("4", self.dwell)] if self.dwell else []
-        return [("0", self.start), ("1", self.bottom), *wait, ("0", self.back)]
+    steps: Steps
+    own_feed: bool = False
 
 
 class CycleError(Exception):
@@ -56,23 +55,152 @@ class CycleError(Exception):
 
 
 def drilling(name: str, given: Sequence[str], axis: str) -> Drilling:
-    """Return the hole of CYCLE81 or CYCLE82. Raises CycleError."""
+    """Return the hole of a cycle. Raises CycleError."""
+    at = _levels(given)
+    steps = READ[name](list(given[5:]), at)
+    return Drilling(axis, (("0", at.start, ""), *steps, ("0", at.back, "")), name == "CYCLE85")
+
+
+class Levels(NamedTuple):
+    """Where a cycle ends, the surface, where its feed begins, and the depth."""
+
+    back: str
+    plane: str
+    start: str
+    bottom: str
+
+
+def _levels(given: Sequence[str]) -> Levels:
+    """Return the levels of a cycle. Raises CycleError."""
     values = [*given, *[""] * 5]
-    rest = list(given[5:])
-    dwell = rest.pop(0) if name == "CYCLE82" and rest else ""
-    if any(other not in ("", "0") for other in rest[:-1]) or (rest and rest[-1] not in ALIKE):
-        raise CycleError("an argument behind the depth is not read")
     back, plane, gap = (_number(values[k], what) for k, what in enumerate(("RTP", "RFP", "SDIS")))
-    if values[3] and values[4] and Decimal(_number(values[4], "DPR")):
-        raise CycleError("both DP and DPR are given")
     level = Decimal(_number(plane, "RFP"))
-    bottom = _number(values[3], "DP") if values[3] else ""
-    if not bottom:
-        bottom = format(level - abs(Decimal(_number(values[4], "DPR"))), "f")
+    bottom = _depth(values[3], values[4], level, "DP", "DPR")
     start = format(level + abs(Decimal(gap)), "f")
     if not Decimal(bottom) < level <= Decimal(start) <= Decimal(back):
         raise CycleError("its levels are not in order: depth, reference, start, return")
-    return Drilling(axis, start, bottom, back, _seconds(dwell))
+    return Levels(back, plane, start, bottom)
+
+
+def _depth(absolute: str, below: str, level: Decimal, *names: str) -> str:
+    """Return a depth that is given absolute, or below the reference plane. Raises CycleError."""
+    if absolute and below and Decimal(_number(below, names[1])):
+        raise CycleError(f"both {names[0]} and {names[1]} are given")
+    if absolute:
+        return _number(absolute, names[0])
+    return format(level - abs(Decimal(_number(below, names[1]))), "f")
+
+
+def _nothing_more(rest: Sequence[str]) -> None:
+    """Refuse arguments behind those that are read. Raises CycleError."""
+    if any(other not in ("", "0") for other in rest[:-1]) or (rest and rest[-1] not in ALIKE):
+        raise CycleError("an argument behind the depth is not read")
+
+
+def _drilled(rest: list[str], at: Levels) -> Steps:
+    """CYCLE81: feed to the depth."""
+    _nothing_more(rest)
+    return (("1", at.bottom, ""),)
+
+
+def _with_dwell(rest: list[str], at: Levels) -> Steps:
+    """CYCLE82: feed to the depth, dwell."""
+    dwell = _seconds(rest.pop(0)) if rest else ""
+    return (*_drilled(rest, at), *_wait(dwell))
+
+
+def _bored(rest: list[str], at: Levels) -> Steps:
+    """CYCLE89: feed to the depth, dwell, and out at the same feed."""
+    return (*_with_dwell(rest, at), ("1", at.start, ""))
+
+
+def _reamed(rest: list[str], at: Levels) -> Steps:
+    """CYCLE85: in at FFR, dwell, out at RFF."""
+    dwell, into, out = [*rest, "", "", ""][:3]
+    _nothing_more(rest[3:])
+    feeds = [_number(text, what) for text, what in ((into, "FFR"), (out, "RFF"))]
+    if any(Decimal(feed) <= 0 for feed in feeds):
+        raise CycleError("FFR and RFF have to be above 0")
+    return (("1", at.bottom, feeds[0]), *_wait(_seconds(dwell)), ("1", at.start, feeds[1]))
+
+
+def _pecked(rest: list[str], at: Levels) -> Steps:
+    """CYCLE83: in strokes alike, each behind a way out (VARI 1), or a little back (VARI 0).
+
+    The first counts from the surface. Only where arguments say all of it: what DAM, VRT and DIS1 of 0 mean is in machine data.
+    """
+    first, by, less, dwell, above, slower, kind, axn, _, back, last, near = [*rest, *[""] * 12][:12]
+    _nothing_more([axn, *rest[12:]] if rest[12:] else [axn, ""])
+    if any(text and Decimal(_number(text, what)) for text, what in ((less, "DAM"), (by, "FDPR"))):
+        raise CycleError("DAM or FDPR changes how deep a stroke is")
+    if slower and Decimal(_number(slower, "FRF")) not in (0, 1):
+        raise CycleError("FRF slows the first stroke")
+    clear = {"0": False, "1": True}.get(kind)
+    gap = near if clear else back
+    if clear is None or not gap or Decimal(_number(gap, "DIS1 or VRT")) <= 0:
+        raise CycleError("VARI, and DIS1 or VRT, have to be given: else machine data decide")
+    depth = Decimal(_number(first, "FDEP"))
+    end, top = Decimal(at.bottom), Decimal(at.plane)
+    stroke = top - depth
+    if not end <= depth < top or (top - end) / stroke > MOST:
+        raise CycleError("FDEP is not between the surface and the depth")
+    steps: list[tuple[str, str, str]] = []
+    while depth > end:
+        steps += [("1", format(depth, "f"), ""), *_wait(_seconds(dwell))]
+        up = depth + Decimal(gap)
+        if clear:
+            steps += [("0", at.start, ""), *_wait(_seconds(above)), ("0", format(up, "f"), "")]
+        else:
+            steps.append(("1", format(up, "f"), ""))
+        depth -= stroke
+    final = last if last and Decimal(_number(last, "DTD")) else dwell
+    return (*steps, ("1", at.bottom, ""), *_wait(_seconds(final)))
+
+
+def _wait(seconds: str) -> Steps:
+    return (("4", seconds, ""),) if seconds else ()
+
+
+READ = {
+    "CYCLE81": _drilled,
+    "CYCLE82": _with_dwell,
+    "CYCLE83": _pecked,
+    "CYCLE85": _reamed,
+    "CYCLE89": _bored,
+}
+"""The cycles that are read, with the steps between the start and the way back."""
+
+
+def row(given: Sequence[str], stands: Sequence[Decimal | None]) -> list[tuple[Decimal, Decimal]]:
+    """Return the places of HOLES1 in the plane. Raises CycleError.
+
+    It may begin at the end that is nearer to the tool, or always at the first: where the first is
+    the nearer one both are the same.
+    """
+    if len(given) != 6:
+        raise CycleError("it takes six arguments")
+    names = ("SPCA", "SPCO", "STA1", "FDIS", "DBH")
+    a, b, angle, first, step = (
+        Decimal(_number(text or "0", what)) for text, what in zip(given, names, strict=False)
+    )
+    if not given[5].isdigit() or not 0 < int(given[5]) <= MOST:
+        raise CycleError("NUM counts no holes")
+    turn = math.radians(float(angle))
+    x, y = Decimal(repr(math.cos(turn))), Decimal(repr(math.sin(turn)))
+    along = [first + k * step for k in range(int(given[5]))]
+    places = [(a + d * x, b + d * y) for d in along]
+    ends = [
+        math.dist([float(s) for s in stands if s is not None], [float(p) for p in place])
+        if None not in stands
+        else math.nan
+        for place in (places[0], places[-1])
+    ]
+    if len(places) > 1 and not ends[0] < ends[1] - CLEARLY:
+        raise CycleError("it may begin at either end: let the tool stand nearer to the first hole")
+    return places
+
+
+CLEARLY = 0.01  # mm
 
 
 def circle(given: Sequence[str]) -> list[tuple[Decimal, Decimal]]:

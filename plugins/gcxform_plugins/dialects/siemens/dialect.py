@@ -60,7 +60,10 @@ stands, with all that is lost behind it.
 | CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
 | CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
+| CYCLE89, CYCLE85 | out at the feed, at RFF; behind CYCLE85 F must be programmed again | C81 |
+| CYCLE83 | alike strokes; only with VARI, and DIS1 or VRT, and without DAM | C81 |
 | MCALL | that behind each line with axis words | C81 |
+| HOLES1 under MCALL | from the first on, where the tool is nearer to that; else refused | [K] |
 | HOLES2 under MCALL | holes on a circle, in the order of their numbers, by lines | OM 286 |
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
 | R parameters | not known until they are set; a block sets several, left to right | [K] |

@@ -348,13 +348,14 @@ class Statements(gx.Translator):
         name, given = cycles.arguments(item)
         if name == "TRAORI" and given in ([""], ["1"]):
             self._switched(line, item, name)
-        elif name in ("CYCLE81", "CYCLE82"):
+        elif name in cycles.READ:
             line.cycle = item
             self._drilled(line, item, name, given)
-        elif name == "HOLES2" and self.drilling is not None:
+        elif name in ("HOLES1", "HOLES2") and self.drilling is not None:
             line.cycle, self.once = item, self.drilling
             try:
-                self.holes = cycles.circle(given)
+                stands = [self.place.known(axis) for axis in self.plane]
+                self.holes = cycles.row(given, stands) if name[-1] == "1" else cycles.circle(given)
             except cycles.CycleError as error:
                 self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
