@@ -127,7 +127,8 @@ def _reamed(rest: list[str], at: Levels) -> Steps:
 def _pecked(rest: list[str], at: Levels) -> Steps:
     """CYCLE83: in strokes alike, each behind a way out (VARI 1), or a little back (VARI 0).
 
-    The first counts from the surface. Only where arguments say all of it: what DAM, VRT and DIS1 of 0 mean is in machine data.
+    The first counts from the surface. Only where arguments say all of it: what DAM, VRT and DIS1
+    of 0 mean is in machine data.
     """
     first, by, less, dwell, above, slower, kind, axn, _, back, last, near = [*rest, *[""] * 12][:12]
     _nothing_more([axn, *rest[12:]] if rest[12:] else [axn, ""])
