@@ -237,8 +237,8 @@ MUTATIONS = (
     Mutation(
         "siemens: DPR is a level",
         CYCLES,
-        'bottom = format(level - abs(Decimal(_number(values[4], "DPR"))), "f")',
-        'bottom = format(-abs(Decimal(_number(values[4], "DPR"))), "f")',
+        'return format(level - abs(Decimal(_number(below, names[1]))), "f")',
+        'return format(-abs(Decimal(_number(below, names[1]))), "f")',
         RANDOM,
     ),
     Mutation(
@@ -251,8 +251,8 @@ MUTATIONS = (
     Mutation(
         "siemens: behind a cycle the code before it is taken to hold",
         BLOCKS,
-        '        self.said = "0"\n\n    # --- tools',
-        "\n    # --- tools",
+        'self.said, self.feed_open = "0", hole.own_feed',
+        "self.feed_open = hole.own_feed",
         RANDOM,
     ),
     Mutation(
@@ -440,8 +440,8 @@ MUTATIONS = (
     Mutation(
         "siemens: plain lines know no frame",
         BLOCKS,
-        "if self.length_is_elsewhere or self.frame != Frame():",
-        "if self.length_is_elsewhere:",
+        "if self.feed_open or self.length_is_elsewhere or self.frame != Frame():",
+        "if self.feed_open or self.length_is_elsewhere:",
         f"{CASES}[dialects/siemens/frame]",
     ),
     Mutation(
