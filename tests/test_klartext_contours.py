@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 from gcxform_plugins.passes.absolute import Absolute
 from heidenhain_kit import DIALECT, TOOLS, program, read
-from seeds_kit import some
+from reference import klartext_contours
+from seeds_kit import LONG, some
 
 import gcxform as gx
 from gcxform.modal.state import Reading
@@ -113,3 +114,49 @@ def test_they_stand_where_they_are_written_back(lines):
     text = program(*lines)
     result = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading({})).run(text.encode())
     assert result.text.decode() == text
+
+
+def drawn(seed):
+    """Return a contour: lines, corners between them, arcs that go on, and circles."""
+    draw = Random(seed)
+    at = [draw.uniform(-20, 20), draw.uniform(-20, 20)]
+    lines = [f"L X{at[0]:+.3f} Y{at[1]:+.3f} F100"]
+    for _ in range(draw.randint(2, 9)):
+        words = [f"{draw.choice(('', 'I'))}{axis}{draw.uniform(-30, 30):+.3f}" for axis in "XY"]
+        words = draw.choice((words, words, words[:1], words[1:]))
+        feed = draw.choice(("", "", f" F{draw.randint(50, 500)}"))
+        kind = draw.choice(("L", "L", "L", "CT", "RND", "CHF"))
+        if kind in ("RND", "CHF"):
+            size = f"{draw.uniform(0.05, 4):.3f}"
+            lines.append(f"{kind} {'R' * (kind == 'RND')}{size}{feed}")
+            feed, kind = "", "L"
+        lines.append(" ".join([kind, *words]) + feed)
+    return lines
+
+
+def found(lines):
+    """Return the elements of a contour as the package reads them, or why it refuses them."""
+    try:
+        path = read(program(*lines), start={"X": 0.0, "Y": 0.0, "Z": 0.0})
+    except gx.InputError as error:
+        return str(error)
+    rows = zip(path.kind, path.end, path.centre, path.feed, strict=True)
+    return [(int(k), complex(*e[:2]), complex(*c[:2]), float(f)) for k, e, c, f in rows]
+
+
+@pytest.mark.parametrize("seed", some(40 if not LONG else 20_000))
+def test_contours_are_those_of_another_reader(seed):
+    lines = drawn(seed)
+    try:
+        wanted = klartext_contours.run(lines)
+    except klartext_contours.DoubtfulError:
+        wanted = None
+    got = found(lines)
+    if isinstance(got, str) or wanted is None:
+        assert isinstance(got, str) or wanted is not None, lines
+        return
+    assert [row[0] for row in got] == [row.kind for row in wanted], lines
+    for (_, end, centre, feed), row in zip(got, wanted, strict=True):
+        assert end == pytest.approx(row.end, abs=1e-5), lines
+        assert feed == row.feed, lines
+        assert row.centre is None or centre == pytest.approx(row.centre, rel=1e-4, abs=1e-3), lines
