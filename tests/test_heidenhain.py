@@ -129,7 +129,7 @@ class Writer:
         return [*lines, f"C {end or f'X{x} Y{y - radius:.6f}'} {sense}{self.tail(False)}"]
 
     def radius(self):
-        self.polar = False
+        self.polar, self.pole = False, None
         step = [round(float(v), 3) for v in self.rng.uniform(1.0, 20.0, 2)]
         sign = self.rng.choice(["+", "-"])
         size = np.hypot(*step) / 2 * self.rng.uniform(1.01, 3.0)

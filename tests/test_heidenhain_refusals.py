@@ -70,6 +70,10 @@ REFUSED = {
     "a chamfer": (["L X+9 F100", "CHF 2", "L X+19"], "GX210"),
     "an approach": (["APPR LT X+5 Y+5 LEN5 RL"], "GX210"),
     "a departure": (["DEP LT LEN5"], "GX210"),
+    "a centre from before CR": (
+        ["CC X+5 Y+0", "L X+5 F100", "CR X+9 Y+4 R5 DR+", "C X+1 Y+4 DR+"],
+        "GX213",
+    ),
     "a tangent circle": (["CT X+5 Y+5"], "GX210"),
     "free contours": (["FC DR- R5"], "GX210"),
     "vectors": (["LN X+5 TX+0 TY+0 TZ+1"], "GX210"),

@@ -85,3 +85,27 @@ def test_real_programs_go_there_and_back():
     found = [round_trips.round_trip(job, "heidenhain") for job in jobs if round_trips.counts(job)]
     assert not {"CRASH", "DIFFERS", "GX601"} & {one.code for one in found}
     assert sum(not one.code for one in found) >= 14
+
+
+def test_a_datum_is_shifted_by_words_of_one_line():
+    lines = words(
+        "TRANS DATUM AXIS X+5 Y-2 Z+0", "L X+1 Y+1 FMAX", "TRANS DATUM RESET", "L X+1 FMAX"
+    )
+    assert lines[0][:10] == "G52 X5 Y-2"
+    assert lines[2][:6] == "G52 X0"
+    twice = words("TRANS DATUM AXIS X+5", "TRANS DATUM AXIS IX+2", "L X+1 FMAX")
+    assert twice[1][:6] == "G52 X7"
+
+
+@pytest.mark.parametrize(
+    "shifts",
+    [
+        ("CYCL DEF 7.1 X+5", "TRANS DATUM AXIS X+2"),
+        ("TRANS DATUM AXIS X+2", "CYCL DEF 7.1 X+5"),
+        ("CYCL DEF 7.1 X+5", "TRANS DATUM RESET"),
+        ("TRANS DATUM TABLE TABLINE 3",),
+    ],
+)
+def test_two_ways_to_shift_a_datum_are_not_mixed(shifts):
+    with pytest.raises(gx.GcxformError, match="TRANS DATUM"):
+        words(*shifts, "L X+1 FMAX")

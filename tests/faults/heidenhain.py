@@ -28,6 +28,20 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: TRANS DATUM and cycle 7 shift together",
+        CYCLES,
+        "if match is None or (self.by_cycle and any(map(float, self.shift.values()))):",
+        "if match is None:",
+        "tests/test_klartext_target.py::test_two_ways_to_shift_a_datum_are_not_mixed",
+    ),
+    Mutation(
+        "klartext: CC holds behind CR",
+        MOVES,
+        "        self.pole = {}  # whether",
+        "        # whether",
+        f"{REFUSED}[a centre from before CR]",
+    ),
+    Mutation(
         "klartext: a reamer leaves in the feed of the way in",
         CYCLES,
         "exact(told[208] or feed)",

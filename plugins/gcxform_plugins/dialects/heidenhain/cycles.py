@@ -17,6 +17,7 @@ VALUE = r"[+-]?(?:\d{1,9}(?:[.,]\d{0,9})?|[.,]\d{1,9})"
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
 SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
 SHIFTED = re.compile(rf"(I?)([XYZABCUVW])\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))\s*")
+DATUM = re.compile(r"TRANS\s+DATUM\s+(?:AXIS\s+(.*?)|RESET)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
@@ -42,6 +43,7 @@ class Cycles(Parameters):
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
         self.bounded = False
+        self.by_cycle = True
 
     def define(self, item: gx.Item) -> list[str]:
         """CYCL DEF: what a cycle is told. Raises InputError for those that are not resolved."""
@@ -119,6 +121,9 @@ class Cycles(Parameters):
         ahead = next((text for text in rest if text.strip()), "")
         if SHIFT_LINE.match(ahead):
             return []
+        if not self.by_cycle and any(map(float, self.shift.values())):
+            self.refuse("a datum shift by cycle 7 beside one by TRANS DATUM", item)
+        self.by_cycle = True
         return self._shifted(item, self.new_shift)
 
     def _shifts(self, item: gx.Item, text: str) -> Iterator[tuple[str, str]]:
@@ -165,6 +170,24 @@ class Cycles(Parameters):
                 self.lose(axis)
         self.shift, self.pole, self.polar, self.last = new, {}, None, None
         return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
+
+    def datum(self, item: gx.Item) -> list[str]:
+        """TRANS DATUM AXIS and RESET: as cycle 7, where that shifts nothing (TNC7, datum shift).
+
+        Which of the two holds where both shift is not known.
+        """
+        match = DATUM.fullmatch(item.name)
+        if match is None or (self.by_cycle and any(map(float, self.shift.values()))):
+            self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+        self.by_cycle = False
+        if match[1] is None:
+            return self._shifted(item, dict.fromkeys(LINEAR, "0"))
+        given: dict[str, str] = {}
+        for axis, number in self._shifts(item, match[1]):
+            if axis in given:
+                raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
+            given[axis] = number
+        return self._shifted(item, given)
 
     def _preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
         """Cycle 247: the preset; the one set by hand, if all of the program counts from it."""

@@ -22,7 +22,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | RND, CHF | between lines in X and Y, before any offset; F is their own | 620, p. 291 |
 | CHF | its length is that along each line (a simulator of TNC 426) | |
 | CT | from the direction in which the element before it ends | iTNC 530, p. 225 |
-| CC behind RND, CHF, CT | whether it holds is not known: write it again | |
+| CC behind RND, CHF, CT, CR | whether it holds is not known: write it again | |
 | APPR, DEP, LN, FK, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
@@ -41,6 +41,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |
 | END PGM | ends the program, as M2 and M30 do | [K] |
 | cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
+| TRANS DATUM | as cycle 7; not beside it | TNC7, D6 of the facts |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
 | cycle 32 | T is how far the path may be off, as G64 P; its other lines: nothing | 620, p. 276 |
 | cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |

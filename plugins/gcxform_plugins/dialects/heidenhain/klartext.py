@@ -60,6 +60,7 @@ class Klartext(Cycles):
             "LBL": self.label,
             "CALL": self.call,
             "SEL": self.select,
+            "TRANS": self.datum,
             **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
             "FUNCTION": self._function_of,
         }

@@ -184,7 +184,9 @@ class Moves(Saying):
             raise self.refusal("GX302", "CR cannot end where it starts", items[0])
         words = f" R{said.radius}"
         said.radius = ""
-        return self._all(said, self._arc(said, items[0], ends, words))
+        block = self._arc(said, items[0], ends, words)
+        self.pole = {}  # whether CR is a CC as well is not known
+        return self._all(said, block)
 
     def _ends(self, said: Said, allowed: str) -> dict[str, str]:
         ends: dict[str, str] = {}

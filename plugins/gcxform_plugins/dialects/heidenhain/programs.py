@@ -40,7 +40,7 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected",),
+    *("selected", "by_cycle"),
 )
 
 
