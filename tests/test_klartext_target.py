@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from heidenhain_kit import DIALECT, TOOLS
+from heidenhain_kit import DIALECT, TOOLS, program, read
 from seeds_kit import LONG
 
 import gcxform as gx
@@ -88,13 +88,10 @@ def test_real_programs_go_there_and_back():
 
 
 def test_a_datum_is_shifted_by_words_of_one_line():
-    lines = words(
-        "TRANS DATUM AXIS X+5 Y-2 Z+0", "L X+1 Y+1 FMAX", "TRANS DATUM RESET", "L X+1 FMAX"
-    )
-    assert lines[0][:10] == "G52 X5 Y-2"
-    assert lines[2][:6] == "G52 X0"
-    twice = words("TRANS DATUM AXIS X+5", "TRANS DATUM AXIS IX+2", "L X+1 FMAX")
-    assert twice[1][:6] == "G52 X7"
+    move = "L X+1 Y+1 FMAX"
+    shifts = ("TRANS DATUM AXIS X+5 Y-2", move, "TRANS DATUM AXIS IX+2", move, "TRANS DATUM RESET")
+    path = read(program(*shifts, move), start=START)
+    assert path.end[:, :2].tolist() == [[6, -1], [8, -1], [1, 1]]
 
 
 @pytest.mark.parametrize(
