@@ -169,3 +169,10 @@ def test_cycles_and_compensation_keep_the_moves_behind_them():
     lines = ["G81 Z5 I-5", "X5", "X5I", "G80", "X3", "X3I", "G41 X5", "X5I", "G40 X6", "X2I"]
     text, _ = written(HEAD + "\n".join(lines) + "\nM30\n")
     assert text.splitlines()[2:-1] == [*lines[:5], "X6", *lines[6:9], "X8"]
+
+
+def test_a_subroutine_is_executed_behind_a_structure_that_is_kept():
+    sub = SUB.replace("XP1\n", "G0 G90 XP1\n")
+    lines = ["P9=V.A.X", "$IF P9 > 2", "X1", "$ENDIF", "#PCALL STEP P1=3", "G0 G90 X1"]
+    text, _ = written(sub + HEAD + "\n".join([*lines, "X2I", "M30"]) + "\n")
+    assert text.splitlines()[-2:] == ["X3", "M30"]

@@ -140,6 +140,13 @@ MUTATIONS = (
         FLOWS,
     ),
     Mutation(
+        "fagor: a subroutine above a structure that is kept is kept with it",
+        PROGRAMS,
+        "self.maybe, self.why = range(self.line, until + 1), why",
+        "self.maybe, self.why = range(until + 1), why",
+        FLOWS,
+    ),
+    Mutation(
         "fagor: moves behind a cycle that is kept are changed",
         PROGRAMS,
         "        if self.modal:",

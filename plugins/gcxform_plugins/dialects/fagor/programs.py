@@ -60,6 +60,7 @@ class Programs(Flow):
     """Executes a program, and keeps what it does not understand where that may stay.
 
     unsaid  what has to be said before the next move, as it may have been changed: G90, and a motion
+    maybe   lines of a structure that is kept: they may be executed
     ran     lines that were executed, and not kept;  named: axes of the program
     gone    those that may stand anywhere
     """
@@ -71,7 +72,7 @@ class Programs(Flow):
     def __init__(self, *given: object) -> None:
         super().__init__(*given)
         self.kept_lines: list[tuple[int, str]] = []
-        self.kept_until = -1
+        self.maybe = range(0)
         self.why = self.tied = self.modal = ""
         self.unsaid: set[str] = set()
         self.beside = False
@@ -86,7 +87,7 @@ class Programs(Flow):
         if not self.reading.stays:
             return super().blocks(items)
         self.places.arrive()
-        if self.line <= self.kept_until:
+        if self.line in self.maybe:
             return self._kept(items, self.why)
         before = {name: copy(getattr(self, name)) for name in STATE}
         try:
@@ -148,7 +149,8 @@ class Programs(Flow):
         until = self._structure_to(text) if decides and not self.calls else -1
         if self.calls or FROM_HERE.search(text) or (decides and until < 0):
             return self._stop(items, why)
-        self.kept_until, self.why = max(self.kept_until, until), why
+        if until >= 0:
+            self.maybe, self.why = range(self.line, until + 1), why
         return self._kept(items, why)
 
     def _structure_to(self, text: str) -> int:
@@ -182,7 +184,7 @@ class Programs(Flow):
         self.kept_lines.append((self.line, why))
         self._lose(items, text)
         said = [code_of(item) for item in items if code_of(item) in STATED]
-        if self.line <= self.kept_until:  # it may be executed, or not
+        if self.line in self.maybe:  # it may be executed, or not
             said = []
         self.loses |= {*tables.AXES & set(self.dialect.axes), "F"}
         return [" ".join([*said, self._stays(text)])]
@@ -195,7 +197,7 @@ class Programs(Flow):
         self.bars, self.plainly = {}, False
         self.polar = None
         self.pole = None if POLES.search(text) or CALLS.match(text) else self.pole
-        opaque = CALLS.match(text) is not None or "$" in text or self.line <= self.kept_until
+        opaque = CALLS.match(text) is not None or "$" in text or self.line in self.maybe
         opaque |= any(c[:1] == "M" and c not in tables.M_CODES for c in codes)
         if opaque or "=" in text:
             self.known = dict.fromkeys(self.known)
