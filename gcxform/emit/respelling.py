@@ -26,10 +26,12 @@ def respelled(
 ) -> bytes:
     """Return a program for its blocks as they were written: lists of lines, by block.
 
-    `absolute`: words that count from where an axis stands are written as positions.
+    `absolute`: words that count from where an axis stands are written as positions, but for lines
+    whose blocks stay and that no other line can stand for: steps of a loop, or beside a parameter.
     Raises InputError where a line cannot be spelled, or would differ between its executions.
     """
     new: dict[int, str] = {}
+    changes: dict[int, bool] = {}
     whole, translator = source.text.splitlines(), source.translator
     speller = _Spelling(translator, whole)
 
@@ -42,15 +44,20 @@ def respelled(
         text: str | None = raw
         said = speller.said(made)
         stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
-        if made != whole[first:stop] or stepped:
+        changed = made != whole[first:stop]
+        changes[line] = changes.get(line, False) or changed
+        if changed or stepped:
             text = translator.spelled(line, [each.decode("latin-1") for each in made])
             text = translator.replaced(line, said) if text is None and said else text
+            text = raw if text is None and not changed else text
         if text != raw and line >= translator.own:
             raise _refusal(source, line, "this line would change, and stands in another file")
         if text is None:
             raise _refusal(source, line, "what this line became cannot be said in its language")
         if new.setdefault(line, text) != text:
-            raise _refusal(source, line, "this line becomes another each time it is executed")
+            if changes[line]:
+                raise _refusal(source, line, "this line becomes another each time it is executed")
+            new[line] = raw
     several = any("\n" in text for text in new.values())
     made_of = _joined(given, new)
     if not several:

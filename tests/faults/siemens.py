@@ -30,6 +30,13 @@ COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_comp
 
 MUTATIONS = (
     Mutation(
+        "siemens: a step of a loop stays what it was the first time",
+        "gcxform/emit/respelling.py",
+        "            new[line] = raw\n",
+        "            pass\n",
+        f"{CASES}[dialects/siemens/step-beside-a-parameter]",
+    ),
+    Mutation(
         "siemens: CYCLE89 comes out in rapid",
         CYCLES,
         'return (*_with_dwell(rest, at), ("1", at.start, ""))',

@@ -92,7 +92,7 @@ class Builder:
         return f"{self.pick('G0', 'G1', '')} {' '.join(words)}".strip()
 
     def statement(self, depth):
-        kind = self.draw.randrange(15 if depth else 6)
+        kind = self.draw.randrange(16 if depth else 6)
         put = self.lines.append
         if kind < 3:
             put(self.block())
@@ -111,6 +111,8 @@ class Builder:
             self.looped(depth)
         elif kind == 12:
             self.framed()
+        elif kind == 13:
+            self.polar()
         else:
             self.drilled()
 
@@ -204,17 +206,42 @@ class Builder:
         self.lines.append("G0 " + " ".join({"X": "X1", "Y": "Y=BB", "Z": "Z5"}[a] for a in told))
         self.shifted -= {*told}
 
+    def polar(self):
+        if self.shifted & {*"XY"}:
+            pole = f"G111 X{self.number()} Y={self.bounded()}"
+        else:
+            pole = f"{self.pick('G110', 'G111')} X={self.bounded()} Y{self.number()}"
+        self.lines += [pole, f"G1 F100 RP=ABS({self.bounded()})+1 AP={self.bounded()}"]
+        for _ in range(self.draw.randrange(3)):
+            far = f"RP={self.pick('2', '0.5', 'ABS(AA)')}"
+            polar = f"G112 {far} AP={self.number()}"
+            self.lines += self.pick([f"AP={self.bounded()} Z1"], [far], [polar, f"{far} AP=R1"])
+            if "Z1" in self.lines[-1]:
+                self.shifted -= {"Z"}
+        self.shifted -= {*"XY"}
+
     def drilled(self):
         depth = self.pick("-3.5", "", "-10")
-        hole = f"CYCLE8{self.pick('1', '2')}(9,1,0.5,{depth},{'' if depth else '4'})"
+        levels = f"9,1,0.5,{depth},{'' if depth else '4'}"
+        feeds, first = "100,250", self.pick("-1", "0.25", "-2.5")
+        strokes = f"{first},,0,{self.pick('', '0.5')},,1,{self.pick('0', '1')},,,1.25,,0.75"
+        hole, words = self.pick(
+            ("CYCLE81", levels),
+            ("CYCLE82", levels),
+            ("CYCLE83", f"{levels},{strokes}"),
+            ("CYCLE85", f"{levels},,{feeds}"),
+            ("CYCLE89", f"{levels},0.5"),
+        )
+        to = "G0 " if hole == "CYCLE85" else ""  # behind it no feed is in force
         self.lines.append("G1 F100")
         if self.draw.random() < 0.5:
-            self.lines.append(hole)
+            self.lines.append(f"{hole}({words})")
         else:
-            self.lines += [f"MCALL {hole}", "X4", f"X=AC({self.bounded()}) Y3"]
+            self.lines += [f"MCALL {hole}({words})", f"{to}X4", f"{to}X=AC({self.bounded()}) Y3"]
             if self.draw.random() < 0.5:
                 self.lines.append("HOLES2(1,2,5,30,0,3)")
             self.lines.append("MCALL")
+        self.lines.append("F100")
 
     def text(self):
         for _ in range(self.draw.randint(4, 9)):

@@ -32,7 +32,8 @@ FUNCTIONS = {
     "MAXVAL": max,
     "ATAN2": lambda y, x: math.degrees(math.atan2(y, x)),
 }
-WORD = re.compile(r"(RPL|[A-Z])\s*(=)?\s*", re.IGNORECASE)
+WORD = re.compile(r"(RPL|AP|RP|[A-Z])\s*(=)?\s*", re.IGNORECASE)
+NEXT = re.compile(r"\s+(?=(?:AP|RP|[A-Z])\s*=|[A-Z][-+.\d]|[A-Z]+$)", re.IGNORECASE)
 CYCLE = re.compile(r"(MCALL\s+)?(CYCLE8[1-9]|HOLES2)\s*\((.*)\)", re.IGNORECASE)
 UNITS = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
 
@@ -67,6 +68,7 @@ class Machine:
         self.at = [0.0, 0.0, 0.0]  # outside
         self.matrix, self.shift = UNITS, [0.0, 0.0, 0.0]
         self.motion, self.steps = "0", False
+        self.pole, self.polar = [0.0, 0.0], {}
         self.hole, self.moves = None, []
 
     # --- values ---
@@ -250,7 +252,7 @@ class Machine:
             self.hole = None
         elif re.fullmatch(r"A?(TRANS|ROT|SCALE|MIRROR)", word):
             self.framed(word, code[len(word) :])
-        elif all(
+        elif not re.match(r"(AP|RP)\s*=", code, re.IGNORECASE) and all(
             re.match(r"(R\d+|R\[[^]]*\]|\w\w+\s*(\[[^]]*\])?)\s*=", p) for p in self.parts(code)
         ):
             for part in self.parts(code):
@@ -299,7 +301,9 @@ class Machine:
             found = WORD.match(text, k)
             k = found.end()
             if found[2]:
-                stop = re.compile(r"\s+(?=[A-Z]\s*=|[A-Z][-+.\d]|[A-Z]+$)", re.I).search(text, k)
+                stop = re.compile(r"\s+(?=(?:AP|RP|[A-Z])\s*=|[A-Z][-+.\d]|[A-Z]+$)", re.I).search(
+                    text, k
+                )
                 end = stop.start() if stop else len(text)
                 body = text[k:end].strip()
                 way = re.fullmatch(r"(AC|IC)\s*\((.*)\)", body, re.IGNORECASE)
@@ -332,9 +336,31 @@ class Machine:
         self.at = [a + b for a, b in zip(applied(self.matrix, point), self.shift, strict=True)]
         self.moves.append((kind, *self.at))
 
+    def set_pole(self, code, words):
+        """G110 counts from the tool, G111 from zero, G112 from the pole before."""
+        base = {110: self.here()[:2], 111: [0.0, 0.0], 112: self.pole}[code]
+        given = [words.get(axis, 0.0) for axis in "XY"]
+        if "RP" in words:
+            given = self.turned(words)
+        self.pole, self.polar = [a + b for a, b in zip(base, given, strict=True)], {}
+
+    @staticmethod
+    def turned(polar):
+        angle = math.radians(polar["AP"])
+        return [polar["RP"] * math.cos(angle), polar["RP"] * math.sin(angle)]
+
     def move(self, code):
-        ends = {}
-        for letter, way, value in self.words(code):
+        ends, given = {}, [*self.words(code)]
+        poles = [value for letter, _, value in given if letter == "G" and 110 <= value <= 112]
+        if poles:
+            self.set_pole(int(poles[0]), {letter: value for letter, _, value in given})
+            return
+        about = {letter: value for letter, _, value in given if letter in ("AP", "RP")}
+        if about:
+            self.polar |= about
+            place = self.turned(self.polar)
+            ends = {x: ("AC", a + b) for x, a, b in zip("XY", self.pole, place, strict=True)}
+        for letter, way, value in given:
             if letter == "G" and value in (0, 1):
                 self.motion = str(int(value))
             if letter == "G" and value in (90, 91):
