@@ -36,6 +36,8 @@ TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
 SECONDS = 60
 M_CODES = {"grbl": {"M6": "M0"}}
 """What a user of each target says: a GRBL without a changer stops, and the operator changes."""
+INERT = {"fanuc": ("M6",), "haas": ("M6",)}
+"""Axes stand where they stood behind a tool change by hand, or by a changer that comes back."""
 DROPPED = ("M31", "M33")
 """What has no equal elsewhere and nobody misses: a Haas starts and stops its chip conveyor."""
 
@@ -61,6 +63,7 @@ def into(job: Job, target: str) -> Pipeline:
         numbers=NUMBERS if target != "fanuc" else None,
         m_codes={code: said for code, said in m_codes.items() if int(code[1:]) in source.m_codes},
         drop=frozenset(code for code in DROPPED if int(code[1:]) in source.m_codes),
+        inert=frozenset(INERT.get(target, ())),
     )
 
 

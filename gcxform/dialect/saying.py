@@ -15,6 +15,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
 | no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
 | G28, to a point of another kind there | G53 to the point, where that is known |
+| a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
 | a comment that shows or logs something | a comment |
 """
 
@@ -32,6 +33,7 @@ LOOK_AHEAD, RPM, CANCEL = "look-ahead", "rpm", "cancel"
 SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL})
 """Acts of codes that change no position."""
 HOME, MACHINE = "home", "machine"
+NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
 STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
 NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})
 ENDS = "no-"
@@ -122,11 +124,27 @@ class Saying:
             tells = self.source.text_rule.tells(what)
             return "" if tells and not self.target.text_rule.executes(what) else what
         code = self.source.codes.get(what)
+        if self.lengthens(what):
+            return self._named(VECTOR)
         if code is not None and code.act == HOME:
             return what if self._same_home(what) else self._named(MACHINE) or what
         if code is None or not code.act or code.effect not in (Effect.INERT, Effect.FRAME):
             return what
         return self._spelled(what, code.act)
+
+    @property
+    def length_said(self) -> str:
+        """The code of the target for a tool length by its value; "" where it takes numbers."""
+        return self._named(VECTOR) if any(map(self.lengthens, self.source.codes)) else ""
+
+    def lengthens(self, what: str) -> bool:
+        """Whether a code that calls a tool length by a number is the length itself there."""
+        code = self.source.codes.get(what.removeprefix(SWITCHED))
+        if code is None or code.act not in NUMBERED or not self.crosses:
+            return False
+        return not any(other.act == code.act for other in self.target.codes.values()) and bool(
+            self._named(VECTOR)
+        )
 
     def moves_home(self, what: str) -> bool:
         """Whether a way home of the source is a move in the machine in the target."""

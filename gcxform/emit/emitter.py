@@ -135,6 +135,7 @@ class _Job:
         self._refuse_dwells()
         centre = Centres(self.task, self.stated.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
+        empty &= self.pieces.event < 0
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         self._refuse_lost_times(chosen)
         columns = self.stated, self.positions, self.taps, centre, self.presets

@@ -61,7 +61,8 @@ def unsaid_words(meaning: Meaning, work: str, saying: Saying) -> frozenset[str]:
             gone |= {act.code, *(address for address, _ in act.slots)}
     for event in meaning.events if saying.crosses or saying.drop else ():
         taken = "".join(address for address, _ in event.slots)
-        gone |= set() if saying.instead(event.what) else {event.what}
+        said = saying.instead(event.what) and not saying.lengthens(event.what)
+        gone |= set() if said else {event.what}
         gone |= set(taken) - set(saying.words_of(event.what, taken))
     return frozenset(gone)
 

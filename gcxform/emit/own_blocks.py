@@ -1,13 +1,18 @@
-"""M codes that act on one side of the motion of their block here, and on the other side there.
+"""What stands in a block of its own in the target, beside a motion of the source.
 
-In the target they stand in a block of their own: before the motion what acts before it in the
-source, behind it what acts behind.
+M codes that act on one side of the motion of their block here, and on the other side there: before
+the motion what acts before it in the source, behind it what acts behind. And the length of a tool
+that the source calls by a number, and the target takes as it is: before the motion.
 """
 
 from __future__ import annotations
 
+from math import isfinite
+
+from gcxform.diagnostics import InputError
 from gcxform.dialect.codes import MCode
-from gcxform.emit.expressible import code_of, like
+from gcxform.dialect.dialect import INCH
+from gcxform.emit.expressible import STATED, code_of, like
 from gcxform.emit.manner import Manner, Task
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Number
@@ -40,16 +45,50 @@ def own_blocks(task: Task, count: Ints) -> tuple[list[Given], list[Given]]:
         return before, behind
     said: dict[int, tuple[str, str]] = {}
     first = (count.cumsum() - count).tolist()
+    lengths = _lengths(task)
     for line, (number, rows) in enumerate(zip(task.shape.tolist(), count.tolist(), strict=True)):
         if number not in said:
             said[number] = _texts(task.manner, task.table.shapes.shapes[number])
         at = line + task.path.blocks.first
-        for text, row, found in zip(
-            said[number], (first[line], first[line] + rows), (before, behind), strict=True
-        ):
-            if rows and text:
-                found.append(Given(row, text, at))
+        opens, closes = said[number] if rows else ("", "")
+        opens = " ".join(filter(None, (lengths.get(line, ""), opens)))
+        if opens:
+            before.append(Given(first[line], opens, at))
+        if closes:
+            behind.append(Given(first[line] + rows, closes, at))
     return before, behind
+
+
+def _lengths(task: Task) -> dict[int, str]:
+    """Return by line the codes for tool lengths that the target takes by their value."""
+    found = {}
+    for line, vector in task.read.lengths.items():
+        meaning = task.table.meanings[int(task.shape[line])]
+        names = [e.what for e in meaning.events if task.manner.saying.lengthens(e.what)]
+        for name in names:
+            found[line] = _length(task, line, name, vector)
+    return found
+
+
+def _length(task: Task, line: int, name: str, vector: tuple[float, float, float]) -> str:
+    """Return the code for a tool length, in the unit of its block, which is said with it."""
+    manner = task.manner
+    if any(vector[:2]) or not isfinite(vector[2]):
+        message = f"{manner.target.name} cannot say {name}: how long the tool is has to be known"
+        hint = f"length = ... in [tool.{_number(task, line)}] of the machine file, which is 0 where "
+        hint += "work offsets are set with each tool"
+        raise InputError.one("GX501", message, task.location(line), hint)
+    inch = bool(task.path.blocks.inch[line])
+    decimals = manner.decimals_of("Z", inch)
+    value = f"{vector[2] / (INCH if inch else 1.0):.{decimals}f}"
+    return f"{STATED['units'][1][inch]} {manner.saying.length_said} Z{value}"
+
+
+def _number(task: Task, line: int) -> str:
+    """Return the number in the H word of a line, "1" as an example where there is none known."""
+    slot = int(task.table.slots[task.shape[line], ord("H") - 65])
+    value = float(task.read.value[task.window.first_number[line] + slot]) if slot >= 0 else 0.0
+    return f"{value:g}" if value >= 1 else "1"
 
 
 def _texts(manner: Manner, shape: Shape) -> tuple[str, str]:

@@ -46,6 +46,7 @@ class Interpreted:
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
     0, that set where something counts from, and the state of the frames behind each. `homed` are
     lines that only go to a point of the machine which is known: its code, and the machine's frame.
+    `lengths` are the lines that put a tool length in force, and its vector, mm.
     """
 
     path: Toolpath
@@ -60,6 +61,7 @@ class Interpreted:
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
     homed: Mapping[int, tuple[str, Frame]] = field(default_factory=dict)
+    lengths: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
 
 
 PECKS = ("peck-return", "peck-clearance")
@@ -158,6 +160,7 @@ class Interpreter:
             lines.loses_position(),
             tuple(moves.track.zeroed),
             moves.track.homed,
+            moves.track.lengths,
         )
 
     def _carry(self, lines: Lines, modes: Modes) -> None:

@@ -109,6 +109,9 @@ class OutputSpec:
         CodeTable, Option("M codes of the source, and what takes the place of each")
     ] = field(default_factory=dict)
     drop: Annotated[CodeList, Option("codes of the source that are left out")] = ()
+    inert: Annotated[
+        CodeList, Option("M codes of the control written for that leave its axes where they stand")
+    ] = ()
 
 
 @dataclass(frozen=True)

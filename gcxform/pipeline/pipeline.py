@@ -131,6 +131,7 @@ class Pipeline(Plan):
             spec.output.structure,
             m_codes=spec.output.m_codes,
             drop=frozenset(spec.output.drop),
+            inert=frozenset(spec.output.inert),
         )
 
     # --- runs ---

@@ -28,6 +28,7 @@ import numpy as np
 
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import Open
+from gcxform.contract.inert_codes import with_inert
 from gcxform.contract.kept_planes import says_the_same, with_kept_planes
 from gcxform.contract.options import taken
 from gcxform.contract.own_codes import with_own_codes
@@ -81,6 +82,7 @@ class Plan:
              executed; "written-out": they are written as the blocks that are executed
     m_codes  M codes of the source, and what takes the place of each in the output
     drop     codes of the source that are left out
+    inert    M codes of the target that leave its axes where they stand
     told     takes what each step changes, for who asks why lines differ; None: nobody does
     """
 
@@ -103,6 +105,7 @@ class Plan:
     told: Told | None = field(default=None, compare=False)
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
+    inert: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
@@ -133,7 +136,7 @@ class Plan:
             with_kept_planes(dialect_of(each), False) for each in (self.source, self.target)
         )
         same, source = source is target, with_own_codes(source, control)
-        target = source if same else target
+        target = source if same else with_inert(target, self.inert)
         steps = tuple(taken(step) for step in steps)
         keeps = source is target and says_the_same(s for s in steps if isinstance(s, Pass))
         return {
@@ -298,6 +301,8 @@ class Plan:
         for file in filter(None, (step.demands.written_for for step in self.path_passes)):
             offsets, homes = file.machine.work_offsets, file.machine.homes
             reading = replace(reading, work_offsets=offsets, homes=homes)
+        if self.source is not self.target:  # of its codes the machine file says nothing
+            reading = replace(reading, inert_m=frozenset())
         return replace(reading, units=self.first_units)
 
     @property

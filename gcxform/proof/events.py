@@ -46,6 +46,8 @@ class EventProof:
         saying = self.context.saying
         if not (saying.crosses or saying.drop or saying.m_codes):
             return told
+        if saying.length_said:  # it has a block of its own, before its line
+            told = tuple(sorted(told, key=lambda e: (e.line, not saying.lengthens(e.what))))
         return tuple(self._as_there(event) for event in told if saying.instead(event.what))
 
     def _as_there(self, event: Event) -> Event:
@@ -84,9 +86,12 @@ class EventProof:
     def _values(self, event: Event) -> tuple[tuple[str, float], ...]:
         """Return the numbers of an event that are those of the source.
 
-        Where a zero is set from where the axes stand the words of axes are others, if they stand
+        Where a length is said for the number of a tool, the positions behind it show whether it is
+        the same. Where a zero is set from where the axes stand the words of axes are others, if they stand
         elsewhere: the proof of zeros compares what they set, and here it is which axes there are.
         """
+        if event.what == self.context.saying.length_said:
+            return ()
         if event.what.endswith("DWELL"):
             return tuple((a, round(value, 9)) for a, value in event.values)
         code = self.context.source.codes.get(event.what)

@@ -97,6 +97,14 @@ def lost_in_target(
         "GX509",
         f"where {axis} stands is not known to {name} here, as a code before it may have moved it",
         Location(file, line + 1),
-        f"program {axis}, with the way clear, behind the last code that moves it on {name}: "
-        "tool change, tool length",
+        f"program {axis}, with the way clear, behind the last code that moves it on {name}"
+        + _still(written, context),
     )
+
+
+def _still(written: Toolpath, context: PassContext) -> str:
+    """Return how the user says that a code leaves axes where they stand, if one may lose them."""
+    codes = context.target.m_codes
+    lose = {f"M{number}" for number, code in codes.items() if code.loses_position}
+    found = [event.what for event in written.events if event.what in lose]
+    return f'; or, if it moves none, inert = ["{found[0]}"] in [output]' if found else ""

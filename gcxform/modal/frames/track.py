@@ -25,7 +25,7 @@ from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
 from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.lines import LENGTHS, Lines
-from gcxform.modal.meaning.meaning import ZEROING, Act
+from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
@@ -36,13 +36,6 @@ from gcxform.toolpath.path import Plane
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
-LENGTHENED = frozenset(
-    {
-        *("length", "length-negative", "length-vector", "length-add", "length-number", "no-length"),
-        *("vectors", "no-vectors"),
-    }
-)
-
 LENGTH_STEP = "tool-length-alone"  # what another tool length does to Z before Z is programmed
 UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
@@ -69,8 +62,8 @@ class Break:
 class Track:
     """Follows position and frame; `state.position` and `state.frames` are left up to date.
 
-    `may_step` (lines,) are the moves that may go by distances from where it is not known; `zeroed`
-    and `homed` are as in `Interpreted`.
+    `may_step` (lines,) are the moves that may go by distances from where it is not known; `zeroed`,
+    `homed` and `lengths` are as in `Interpreted`.
     """
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
@@ -87,6 +80,7 @@ class Track:
         self.breaks: list[Break] = []
         self.zeroed: list[tuple[int, FrameState]] = []
         self.homed: dict[int, tuple[str, Frame]] = {}
+        self.lengths: dict[int, tuple[float, float, float]] = {}
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)
 
@@ -146,6 +140,8 @@ class Track:
             self.note_lost((1 << len(self.axes)) - 1)
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
+        if act.name in LENGTHENED:
+            self.lengths[line] = frames.tool
         lengthened = act.name in LENGTHENED and frames.frame() != old
         height = self._moved_by_length(line, old) if lengthened else np.nan
         tools = self.dialect.tool_rule

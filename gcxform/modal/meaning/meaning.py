@@ -102,6 +102,13 @@ FRAMING = frozenset(
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
 """Acts whose effect may depend on where the axes stand."""
+LENGTHENED = frozenset(
+    {
+        *("length", "length-negative", "length-vector", "length-add", "length-number", "no-length"),
+        *("vectors", "no-vectors"),
+    }
+)
+"""What puts another tool length in force, or none."""
 ZEROING = PRESETS | {"local", "preset-restore"}
 """Acts that say where coordinates, or ways home, count from."""
 TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
