@@ -29,11 +29,16 @@ from pathlib import Path
 import gcxform as gx
 from corpus import BESIDE, NUMBERS, OURS, Job, Outcome, counted, filled_in
 from corpus import run as run_in_own
+from gcxform.catalogue.offers import StepBefore, offers
+from gcxform.catalogue.settings import Setting
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 
 TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
 SECONDS = 60
+WAYS = 5
+"""How many offers of hints are taken, one after the other."""
 M_CODES = {"grbl": {"M6": "M0"}}
 """What a user of each target says: a GRBL without a changer stops, and the operator changes."""
 INERT = {"fanuc": ("M6",), "haas": ("M6",)}
@@ -67,16 +72,72 @@ def into(job: Job, target: str) -> Pipeline:
     )
 
 
-def translate(pair: Pair, keep: Path | None = None) -> Outcome:
-    """Write a program in another dialect, and look at what comes out."""
+@dataclass(frozen=True)
+class Found:
+    """What became of a program in a target, and what its hints had to add to get there."""
+
+    outcome: Outcome
+    added: tuple[str, ...] = ()
+
+
+def translate(pair: Pair, keep: Path | None = None) -> Found:
+    """Write a program in another dialect, and look at what comes out.
+
+    What a refusal offers as a pass, or as a code to be left out, is taken, and nothing else.
+    """
+    pipeline, added = into(pair.job, pair.target), list[str]()
+    while len(added) <= WAYS:
+        try:
+            result = pipeline.run(pair.job.corpus / pair.job.path)
+        except gx.GcxformError as error:
+            first = error.diagnostics[0]
+            line = first.where.line if first.where else 0
+            refused = Outcome(pair.job, first.code, first.message, line)
+            try:
+                step = offered(first.hint, added)
+                pipeline = taken(pipeline, step) if step else pipeline
+            except gx.GcxformError:
+                step = None
+            if step is None:
+                return Found(refused, tuple(added))
+            added.append(said(step))
+        except Exception as error:
+            return Found(Outcome(pair.job, "CRASH", repr(error)), tuple(added))
+        else:
+            return Found(looked_at(pair, pipeline, result, keep), tuple(added))
+    return Found(refused, tuple(added))
+
+
+def offered(hint: str, added: list[str]) -> StepBefore | Setting | None:
+    """Return the first offer of a hint that a user can take who knows the target alone."""
+    for offer in offers(hint):
+        drops = isinstance(offer, Setting) and (offer.section, offer.key) == ("output", "drop")
+        if (drops or isinstance(offer, StepBefore)) and said(offer) not in added:
+            return offer
+    return None
+
+
+def said(offer: StepBefore | Setting) -> str:
+    """Return an offer in words."""
+    if isinstance(offer, Setting):
+        return f"drop {' '.join(offer.worth())}"
+    return f"{offer.name} {offer.options}".strip()
+
+
+def taken(pipeline: Pipeline, offer: StepBefore | Setting) -> Pipeline:
+    """Return a pipeline with what a hint offers."""
+    if isinstance(offer, Setting):
+        return replace(pipeline, drop=pipeline.drop | frozenset(offer.worth()))
+    steps = parse_chain(said(offer), BESIDE, default_registry())
+    rest = [step.name for step in pipeline.passes]
+    at = rest.index(offer.step) if offer.step in rest else 0
+    passes = (*pipeline.passes[:at], *steps, *pipeline.passes[at:])
+    return replace(pipeline, passes=passes)
+
+
+def looked_at(pair: Pair, pipeline: Pipeline, result: gx.Result, keep: Path | None) -> Outcome:
+    """Return what is to be said of a result."""
     job = pair.job
-    try:
-        result = into(job, pair.target).run(job.corpus / job.path)
-    except gx.GcxformError as error:
-        first = error.diagnostics[0]
-        return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
-    except Exception as error:
-        return Outcome(job, "CRASH", repr(error))
     if keep is not None:
         file = keep / f"{job.dialect}-{pair.target}" / job.path.replace("/", "__")
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -88,8 +149,8 @@ def translate(pair: Pair, keep: Path | None = None) -> Outcome:
 
 def judged(pair: Pair, text: bytes) -> Outcome | None:
     """Return what is wrong with a program that is proved, if anything."""
-    job, kind = pair.job, default_registry().dialect(pair.target)
-    same = replace(into(job, pair.target), source=kind, m_codes={}, drop=frozenset())
+    job, made = pair.job, into(pair.job, pair.target)
+    same = replace(made, source=made.target, m_codes={}, drop=frozenset())
     try:
         same.run(text)
     except gx.GcxformError as error:

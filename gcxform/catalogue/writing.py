@@ -151,7 +151,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Some codes move axes on one control and not on another: a tool change, a tool length. "
         "Behind one of them the control that is written for stands where the program does not "
         "say, and a block that names only some axes moves from there. Program all linear axes "
-        "between that code and this block, where the way is clear.",
+        "between that code and this block, where the way is clear. If the code moves nothing on "
+        "that machine, a tool change by hand for one, `inert` in [output] says so.",
     ),
     "GX510": (
         "The path is farther off than the budget",

@@ -11,14 +11,14 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.offers import put_before
-from gcxform.dialect.codes import Code, MCode
+from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.saying import HOME
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
 from gcxform.emit.own_blocks import apart, m_codes_of
-from gcxform.modal.meaning.meaning import Meaning
+from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.meaning.tables import CYCLES
 from gcxform.syntax.shapes import Shape
@@ -28,6 +28,7 @@ WAY_HOME: Final = (
     "G91 G28 Z0 and the like can be said by G53: give the machine file where home and the zero of "
     "the work offset are, [home.G28] and [work-offset.G54]"
 )
+SPLINES: Final = frozenset({"G5", "G5.1", "G5.2"})
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -85,7 +86,16 @@ class CodeWords:
         self.draft.literal(lead, text)
 
     def _refuse(self, word: Word, name: str, what: str) -> NoReturn:
-        """Refuse a G code; one of a cycle that can be expanded has a way out."""
+        """Refuse a G code, with the pass, or the option, that leads out."""
+        code = self.source.codes.get(name)
+        if code is not None and code.group == "cutter-comp":
+            self.draft.refuse(word, what, put_before("cutter-comp"))
+        if code is not None and code.act in FRAMING:
+            self.draft.refuse(word, what, put_before("offsets"))
+        if code is not None and code.effect is Effect.INERT:
+            self.draft.refuse(word, what, f'drop = ["{name}"] in [output] leaves it out')
+        if name in SPLINES:
+            self.draft.refuse(word, what, put_before("segment", options="chord-error=2um"))
         rule = self.source.cycle_rule
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name not in EXPANDED or cycle is None or cycle.refused:

@@ -198,6 +198,10 @@ def other_in(
     stays = source.tool_rule.h_stays, target.tool_rule.h_stays
     if "H" in code.takes and alone and stays[0] != stays[1]:
         return f"{name} without H"
+    stored = source.cutter_comp.stored, target.cutter_comp.stored
+    sides = code.group == "cutter-comp" and "D" in code.takes and "D" not in meaning.slots
+    if sides and stored[0] != stored[1]:  # the tool in the spindle, or the D in force
+        return f"{name} without D"
     if name in TAPPING:
         return f"{name} with the spindle tied to the feed in the same way"
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:

@@ -14,6 +14,7 @@ from gcxform.dialect.codes import MCode
 from gcxform.dialect.dialect import INCH
 from gcxform.emit.expressible import STATED, code_of, like
 from gcxform.emit.manner import Manner, Task
+from gcxform.modal.meaning.meaning import EventShape
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Number
 from gcxform.system.arrays import Ints
@@ -64,19 +65,20 @@ def _lengths(task: Task) -> dict[int, str]:
     found = {}
     for line, vector in task.read.lengths.items():
         meaning = task.table.meanings[int(task.shape[line])]
-        names = [e.what for e in meaning.events if task.manner.saying.lengthens(e.what)]
-        for name in names:
-            found[line] = _length(task, line, name, vector)
+        for event in meaning.events:
+            if task.manner.saying.lengthens(event.what):
+                found[line] = _length(task, line, event, vector)
     return found
 
 
-def _length(task: Task, line: int, name: str, vector: tuple[float, float, float]) -> str:
+def _length(task: Task, line: int, event: EventShape, vector: tuple[float, float, float]) -> str:
     """Return the code for a tool length, in the unit of its block, which is said with it."""
     manner = task.manner
     if any(vector[:2]) or not isfinite(vector[2]):
-        message = f"{manner.target.name} cannot say {name}: how long the tool is has to be known"
-        hint = f"length = ... in [tool.{_number(task, line)}] of the machine file, which is 0 where "
-        hint += "work offsets are set with each tool"
+        what = f"{manner.target.name} cannot say {event.what}"
+        message = f"{what}: how long the tool is has to be known"
+        hint = f"length = ... in [tool.{_number(task, line, event)}] of the machine file, which is "
+        hint += "0 where work offsets are set with each tool"
         raise InputError.one("GX501", message, task.location(line), hint)
     inch = bool(task.path.blocks.inch[line])
     decimals = manner.decimals_of("Z", inch)
@@ -84,10 +86,11 @@ def _length(task: Task, line: int, name: str, vector: tuple[float, float, float]
     return f"{STATED['units'][1][inch]} {manner.saying.length_said} Z{value}"
 
 
-def _number(task: Task, line: int) -> str:
+def _number(task: Task, line: int, event: EventShape) -> str:
     """Return the number in the H word of a line, "1" as an example where there is none known."""
-    slot = int(task.table.slots[task.shape[line], ord("H") - 65])
-    value = float(task.read.value[task.window.first_number[line] + slot]) if slot >= 0 else 0.0
+    slot = dict(event.slots).get("H")
+    first = int(task.window.first_number[line])
+    value = 0.0 if slot is None else float(task.read.value[first + slot])
     return f"{value:g}" if value >= 1 else "1"
 
 

@@ -87,8 +87,9 @@ class EventProof:
         """Return the numbers of an event that are those of the source.
 
         Where a length is said for the number of a tool, the positions behind it show whether it is
-        the same. Where a zero is set from where the axes stand the words of axes are others, if they stand
-        elsewhere: the proof of zeros compares what they set, and here it is which axes there are.
+        the same. Where a zero is set from where the axes stand the words of axes are others, if
+        they stand elsewhere: the proof of zeros compares what they set, and here it is which axes
+        there are.
         """
         if event.what == self.context.saying.length_said:
             return ()

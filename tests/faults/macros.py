@@ -161,7 +161,7 @@ MUTATIONS = (
     Mutation(
         "the codes of a machine are those of another control too",
         "gcxform/pipeline/plan.py",
-        "target = source if same else target",
+        "target = source if same else with_inert(target, self.inert)",
         "target = source if same else with_own_codes(target, control)",
         "tests/test_own_codes.py",
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 SAYING, OWN = "gcxform/dialect/saying.py", "gcxform/emit/own_blocks.py"
+LENGTHS = "tests/test_lengths_across.py::"
 HERE = "tests/test_said_otherwise.py"
 
 MUTATIONS = (
@@ -98,5 +99,40 @@ MUTATIONS = (
         "if words & (set(code.takes) ^ set(other.takes)):",
         "if code.takes[:0] and words:",
         HERE,
+    ),
+    Mutation(
+        "saying: a tool length keeps its millimetres in inches",
+        OWN,
+        "vector[2] / (INCH if inch else 1.0)",
+        "vector[2]",
+        f"{LENGTHS}test_a_length_is_said_by_its_value_where_numbers_are_not_taken",
+    ),
+    Mutation(
+        "saying: a tool length is written without its unit",
+        OWN,
+        "{STATED['units'][1][inch]} {manner",
+        "{manner",
+        f"{LENGTHS}test_a_length_is_said_by_its_value_where_numbers_are_not_taken",
+    ),
+    Mutation(
+        "saying: G41 without D is of the same tool everywhere",
+        "gcxform/emit/expressible.py",
+        "if sides and stored[0] != stored[1]:",
+        "if False:",
+        f"{LENGTHS}test_a_side_without_d_is_another_tool_on_another_control",
+    ),
+    Mutation(
+        "saying: every code may be called inert",
+        "gcxform/contract/inert_codes.py",
+        "names - known",
+        "set()",
+        f"{LENGTHS}test_what_cannot_be_inert",
+    ),
+    Mutation(
+        "saying: inert codes of one machine are those of another",
+        "gcxform/pipeline/plan.py",
+        "reading = replace(reading, inert_m=frozenset())",
+        "pass",
+        f"{LENGTHS}test_what_is_inert_on_one_machine_is_not_said_of_another",
     ),
 )

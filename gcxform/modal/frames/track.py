@@ -116,6 +116,8 @@ class Track:
             if act.name in ACTS:
                 try:
                     self._one_act(act, line)
+                    if act.name in LENGTHENED:
+                        self.lengths[line] = self.state.frames.tool
                 except ActError as error:
                     self.findings.add(line, error.code, error.message, act.code[0], error.hint)
 
@@ -140,8 +142,6 @@ class Track:
             self.note_lost((1 << len(self.axes)) - 1)
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
-        if act.name in LENGTHENED:
-            self.lengths[line] = frames.tool
         lengthened = act.name in LENGTHENED and frames.frame() != old
         height = self._moved_by_length(line, old) if lengthened else np.nan
         tools = self.dialect.tool_rule

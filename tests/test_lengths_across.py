@@ -1,0 +1,91 @@
+"""Tool lengths, tool changes and cutter compensation on the way to another control."""
+
+from __future__ import annotations
+
+import pytest
+
+import gcxform as gx
+from gcxform.machine.machine import Tool
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+TOOLS = {1: Tool(length=50.0, radius=3.0), 2: Tool(length=25.4)}
+START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0}, tools=TOOLS)
+HEAD = "G21 G90 G94 G17 G54\n"
+
+
+def said(source, target, blocks, **options):
+    pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), START, **options)
+    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
+    assert result.certificate.verified
+    return result.text.decode().split("\n")[1:-2]
+
+
+def refused(source, target, blocks, **options):
+    with pytest.raises(gx.GcxformError) as error:
+        said(source, target, blocks, **options)
+    return error.value.diagnostics[0]
+
+
+LENGTHS = [
+    ("G43 H1\nG0 Z5.", ["G21 G43.1 Z50.000", "G0 Z5."]),
+    ("G43 H1 G0 Z5. M8", ["G21 G43.1 Z50.000", "G0 Z5. M8"]),
+    ("M8 G43 H1\nG0 Z5.\nG49\nG0 Z60.", ["G21 G43.1 Z50.000", "M8", "G0 Z5.", "G49", "G0 Z60."]),
+    ("G20\nG43 H2\nG0 Z5.", ["G20", "G20 G43.1 Z1.0000", "G0 Z5."]),
+    ("G44 H1 G0 Z5.", ["G21 G43.1 Z-50.000", "G0 Z5."]),
+    ("(LONG) G43 H1 (TOOL)\nG0 Z5.", ["G21 G43.1 Z50.000", "(LONG) (TOOL)", "G0 Z5."]),
+]
+
+
+@pytest.mark.parametrize(("blocks", "expected"), LENGTHS)
+def test_a_length_is_said_by_its_value_where_numbers_are_not_taken(blocks, expected):
+    assert said("haas", "grbl", blocks) == expected
+
+
+def test_a_length_that_is_not_known_is_asked_for():
+    found = refused("haas", "grbl", "G43 H7 G0 Z5.")
+    assert (found.code, found.where.line) == ("GX501", 2)
+    assert "[tool.7]" in found.hint
+
+
+CHANGE = "G0 X1. Y2. Z5.\nT1 M6\nG0 X5.\nG1 Z1. F100."
+
+
+def test_a_tool_change_of_the_target_may_be_said_to_move_nothing():
+    found = refused("linuxcnc", "fanuc", CHANGE)
+    assert (found.code, found.hint.endswith('inert = ["M6"] in [output]')) == ("GX509", True)
+    assert said("linuxcnc", "fanuc", CHANGE, inert=frozenset({"M6"})) == CHANGE.split("\n")
+
+
+def test_what_is_inert_on_one_machine_is_not_said_of_another():
+    reading = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0}, inert_m=frozenset({59, 60}))
+    codes = {"M59": "M60"}
+    pipeline = gx.Pipeline(DIALECTS["haas"], DIALECTS["fanuc"], (), reading, m_codes=codes)
+    with pytest.raises(gx.GcxformError) as error:
+        pipeline.run(f"{HEAD}G0 X1. Y2. Z5.\nM59\nG0 X5.\nM30\n".encode())
+    assert error.value.diagnostics[0].code == "GX509"
+
+
+@pytest.mark.parametrize("code", ["M98", "M77", "G4"])
+def test_what_cannot_be_inert(code):
+    with pytest.raises(gx.UsageError, match="inert"):
+        gx.Pipeline(DIALECTS["linuxcnc"], DIALECTS["fanuc"], (), START, inert=frozenset({code}))
+
+
+CONTOUR = "G0 X0. Y0. Z5.\n{} G1 X10. F100.\nY20.\nG40 X30."
+WITHOUT_D = [("linuxcnc", "fanuc"), ("linuxcnc", "haas")]
+
+
+@pytest.mark.parametrize(("source", "target"), WITHOUT_D)
+def test_a_side_without_d_is_another_tool_on_another_control(source, target):
+    begun = "T1 M6\n" + CONTOUR.format("G41")
+    found = refused(source, target, begun, inert=frozenset({"M6"}))
+    assert (found.code, found.message) == ("GX501", f"{target} cannot say G41 without D")
+    assert said(source, target, CONTOUR.format("G41 D1")) == CONTOUR.format("G41 D1").split("\n")
+
+
+def test_a_d_that_stays_in_force_is_no_tool_in_the_spindle():
+    once = CONTOUR.format("G41 D1") + "\n" + CONTOUR.format("G41")
+    found = refused("fanuc", "linuxcnc", once)
+    assert found.message == "linuxcnc cannot say G41 without D"
