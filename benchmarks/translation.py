@@ -8,7 +8,9 @@ program that goes through `absolute` in its own dialect, is no file of a subprog
 the program that calls it) and moves no axis that the target lacks.
 *Verified* is one whose result is proved in the target, which `check` finds nothing new in, and of
 which LinuxCNC's interpreter, where that is the target, reads every line to the end; what is proved
-and is not so is a cause of its own, `CHECK` or `RS274`, for it is worth more than a refusal.
+and is not so is a cause of its own, `CHECK` or `RS274`, for it is worth more than a refusal. Where
+a refusal offers a pass, or a code that may be left out, that is taken; how many went through
+without stands in brackets. Causes are judged in `translation.toml`.
 """
 
 from __future__ import annotations
@@ -19,12 +21,16 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
+from math import isnan
 from pathlib import Path
+
+from msgspec import structs
 
 import gcxform as gx
 from corpus import BESIDE, NUMBERS, OURS, Job, Outcome, counted, filled_in
@@ -36,6 +42,7 @@ from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 
 TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
+JUDGED = Path(__file__).with_name("translation.toml")
 SECONDS = 60
 WAYS = 5
 """How many offers of hints are taken, one after the other."""
@@ -43,6 +50,10 @@ M_CODES = {"grbl": {"M6": "M0"}}
 """What a user of each target says: a GRBL without a changer stops, and the operator changes."""
 INERT = {"fanuc": ("M6",), "haas": ("M6",)}
 """Axes stand where they stood behind a tool change by hand, or by a changer that comes back."""
+RADIUS = 1.27
+"""mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
+SETTINGS = {"cycle-without-place": "drills"}
+"""Setting 28 as a Haas is delivered."""
 DROPPED = ("M31", "M33")
 """What has no equal elsewhere and nobody misses: a Haas starts and stops its chip conveyor."""
 
@@ -62,7 +73,7 @@ def into(job: Job, target: str) -> Pipeline:
     kind = default_registry().dialect(target)
     source, m_codes = made.source, M_CODES.get(target, {})
     return replace(
-        made,
+        asked_for(made),
         target=kind,
         passes=(),
         numbers=NUMBERS if target != "fanuc" else None,
@@ -70,6 +81,21 @@ def into(job: Job, target: str) -> Pipeline:
         drop=frozenset(code for code in DROPPED if int(code[1:]) in source.m_codes),
         inert=frozenset(INERT.get(target, ())),
     )
+
+
+def asked_for(made: Pipeline) -> Pipeline:
+    """Return a pipeline with what its own control was never asked for, as its user knows it."""
+    machine = made.machine
+    if machine is None:
+        return made
+    settings = {key: machine.control.get(key) or said for key, said in SETTINGS.items()}
+    known = {key: said for key, said in settings.items() if made.source.name == "haas"}
+    tools = {
+        number: structs.replace(tool, radius=RADIUS) if isnan(tool.radius) else tool
+        for number, tool in machine.tools.items()
+    }
+    control = {**machine.control, **known}
+    return replace(made, machine=structs.replace(machine, tools=tools, control=control, open={}))
 
 
 @dataclass(frozen=True)
@@ -181,7 +207,7 @@ def said_by_rs274(text: bytes, corpus: Path) -> str:
 
 def cause_of(one: Outcome) -> str:
     """Return the cause of an outcome, with the names of codes and without numbers."""
-    says = re.sub(r"(?<![GM.\d])\d[-.\d]*", "..", one.says)
+    says = re.sub(r"(?<![GM.\d])\d[-.\d]*", "..", re.sub("|".join(TARGETS), "it", one.says))
     return f"{one.code} {says[:75]}"
 
 
@@ -203,31 +229,59 @@ def apart(pair: Pair, found: Outcome) -> bool:
     """Whether a pair does not count: the target lacks an axis, or the file is a subprogram."""
     if found.code == "GX226":
         return True
-    return found.says.startswith(tuple(f"{pair.target} has no axis {a}" for a in "ABCUVW"))
+    return found.says.endswith("it has no such axis")
 
 
 # --- what is printed ---
 
 
+@cache
+def judgements() -> list[dict[str, str]]:
+    """Return what `translation.toml` says of causes."""
+    found: list[dict[str, str]] = tomllib.loads(JUDGED.read_text("utf-8"))["cause"]
+    return found
+
+
+def judgement(one: Outcome) -> str:
+    """Return whether a refusal is right or something is missing, and why; nothing for a new one."""
+    for cause in judgements():
+        if cause["code"] == one.code and re.search(cause.get("says", ""), one.says):
+            kind = "right" if "right" in cause else "missing"
+            return f"{kind}: {cause[kind]}"
+    return ""
+
+
 def print_tables(
-    found: list[tuple[Pair, Outcome]], sources: Iterable[str], targets: Iterable[str]
+    found: list[tuple[Pair, Found]], sources: Iterable[str], targets: Iterable[str]
 ) -> None:
-    """Print how many are verified of how many, and the causes of the others."""
+    """Print how many are verified of how many, and the causes of the others, with judgements."""
     counts = Counter((p.job.dialect, p.target) for p, _ in found)
-    good = Counter((p.job.dialect, p.target) for p, one in found if not one.code)
+    good = Counter((p.job.dialect, p.target) for p, one in found if not one.outcome.code)
+    alone = Counter(
+        (p.job.dialect, p.target) for p, one in found if not (one.outcome.code or one.added)
+    )
     targets = list(targets)
-    print(f"\n| from | {' | '.join(targets)} |\n|---|{'--:|' * len(targets)}")
+    print(f"\n| from | {' | '.join(f'to {t}' for t in targets)} |\n|---|{'--:|' * len(targets)}")
     for source in sources:
         cells = [
-            f"{good[source, t]} of {counts[source, t]}" if counts[source, t] else ""
+            f"{good[source, t]} ({alone[source, t]}) of {counts[source, t]}"
+            if counts[source, t]
+            else ""
             for t in targets
         ]
         print(f"| {source} | {' | '.join(cells)} |")
-    causes = Counter((p.job.dialect, p.target, cause_of(one)) for p, one in found if one.code)
-    print("\n| programs | from | to | cause |\n|--:|---|---|---|")
-    for (source, target, cause), count in causes.most_common():
-        print(f"| {count} | {source} | {target} | {cause} |")
-    print(f"\n{sum(good.values())} of {sum(counts.values())} verified")
+    causes = Counter(
+        (judgement(one.outcome) or "NEW", cause_of(one.outcome))
+        for _, one in found
+        if one.outcome.code
+    )
+    print("\n| programs | cause | judgement |\n|--:|---|---|")
+    for (judged_as, cause), count in causes.most_common():
+        print(f"| {count} | {cause} | {judged_as} |")
+    ways = Counter(step for _, one in found if not one.outcome.code for step in one.added)
+    print("\n" + "; ".join(f"{step}: {count}" for step, count in ways.most_common()))
+    total = sum(good.values()), sum(alone.values()), sum(counts.values())
+    print("\n{} verified, {} of them without an option, of {}".format(*total))
 
 
 def main() -> int:
@@ -250,13 +304,15 @@ def main() -> int:
         todo = list(pairs((j for j, good in zip(jobs, goes, strict=True) if good), targets))
         outcomes = pool.map(translate, todo, [options.keep] * len(todo), chunksize=8)
         found = list(zip(todo, outcomes, strict=True))
-    found = [(pair, one) for pair, one in found if not apart(pair, one)]
-    for pair, one in found:
+    found = [(pair, one) for pair, one in found if not apart(pair, one.outcome)]
+    for pair, each in found:
+        one = each.outcome
         why = f"{one.code} {one.line}: {one.says}" if one.code else "verified"
         if options.list or (options.cause and options.cause in why):
-            print(f"{pair.job.dialect} to {pair.target} {pair.job.path}: {why}")
+            print(f"{pair.job.dialect} to {pair.target} {pair.job.path}: {why} {each.added}")
     print_tables(found, sources, targets)
-    return 1 if {"CRASH", "NOT VERIFIED", "CHECK", "RS274"} & {one.code for _, one in found} else 0
+    bad = {"CRASH", "NOT VERIFIED", "CHECK", "RS274"}
+    return 1 if bad & {one.outcome.code for _, one in found} else 0
 
 
 if __name__ == "__main__":

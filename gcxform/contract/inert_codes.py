@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from typing import Any, cast
 
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.dialect import Dialect
@@ -20,7 +20,7 @@ def with_inert(dialect: type[Dialect], names: frozenset[str]) -> type[Dialect]:
     for name in sorted(names - known):
         message = f"inert: {name} is no M code of {dialect.name} that could be inert"
         raise UsageError.one("GX707", message, hint='inert = ["M6"] in [output]')
-    return _with(dialect, names) if names else dialect
+    return _with(cast(Any, dialect), names) if names else dialect
 
 
 @cache

@@ -34,10 +34,14 @@ SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL})
 """Acts of codes that change no position."""
 HOME, MACHINE = "home", "machine"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
+ABORT = "ABORT"
+"""A comment that ends the program: it stays."""
 STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
 NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})
 ENDS = "no-"
 SWITCHED = "/"
+LASTING, EXECUTED = "#", "(...)"
+"""What is no code and may be left out: assignments that last, and comments that are executed."""
 
 
 def stores_home(dialect: type[Dialect]) -> bool:
@@ -73,6 +77,8 @@ class Saying:
                 raise diagnostics.UsageError.one("GX707", f"{self.target.name} has no code {name}")
 
     def _may_go(self, name: str) -> bool:
+        if name in (LASTING, EXECUTED):
+            return True
         if name in self.source.codes:
             return self.source.codes[name].effect is Effect.INERT
         if name[0] != "M" or "." in name:
@@ -122,6 +128,7 @@ class Saying:
             return what
         if what.startswith(("(", ";")):
             tells = self.source.text_rule.tells(what)
+            tells |= EXECUTED in self.drop and ABORT not in what.upper()
             return "" if tells and not self.target.text_rule.executes(what) else what
         code = self.source.codes.get(what)
         if self.lengthens(what):
@@ -146,9 +153,10 @@ class Saying:
             self._named(VECTOR)
         )
 
-    def moves_home(self, what: str) -> bool:
-        """Whether a way home of the source is a move in the machine in the target."""
-        return self.instead(what) not in (what, "")
+    def moves_home(self, what: str, bare: bool) -> bool:
+        """Whether a way home of the source, of all axes if `bare`, is G53 in the target."""
+        unknown = bare and self.crosses and not self.target.motion_rule.g28_without_axes
+        return self.instead(what) not in (what, "") or (unknown and bool(self.machine))
 
     def _same_home(self, what: str) -> bool:
         """Whether a code goes to the same point of the machine in the target."""

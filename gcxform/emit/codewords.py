@@ -72,7 +72,7 @@ class CodeWords:
     def _say(self, word: Word, name: str, code: Code | None, lead: bytes) -> None:
         """Write a code that sets no mode that is stated, or the one that stands for it."""
         text, said = self.draft.said(word.start, word.end), self.saying.instead(name)
-        if code is not None and code.act == HOME and said != name:
+        if code is not None and code.act == HOME and (said != name or self.key.homed):
             if not self.key.homed:
                 what = f"{name}: it goes to a point of another kind there"
                 self.draft.refuse(word, what, WAY_HOME)

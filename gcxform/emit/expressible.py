@@ -9,7 +9,7 @@ import numpy as np
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import Dialect
-from gcxform.dialect.saying import Saying
+from gcxform.dialect.saying import LASTING, Saying
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.expressions.value import key_set, sets_number, written
@@ -83,7 +83,12 @@ def lasts_in(statement: Statement, source: type[Dialect], target: type[Dialect])
     return sets_number(statement) and known.can_say(key)
 
 
-def needs_assignment(statement: Statement, source: type[Dialect], target: type[Dialect]) -> str:
+def needs_assignment(
+    statement: Statement,
+    source: type[Dialect],
+    target: type[Dialect],
+    drop: frozenset[str] = frozenset(),
+) -> str:
     """Return what is lost without an assignment that another control cannot be told, or nothing.
 
     Nothing is lost where parameters end with the program, and on a control that has none: nobody
@@ -92,7 +97,8 @@ def needs_assignment(statement: Statement, source: type[Dialect], target: type[D
     key, known = key_set(statement), source.flow_rule.arithmetic
     if key is not None and known is not None and known.acts(key):
         return f"the assignment to {written(key)}, which does something on the machine"
-    flows = key is None and source.flow_rule.language
+    flows = key is None and bool(source.flow_rule.language)
+    flows = flows or LASTING in drop
     if target.flow_rule.arithmetic is None or known is None or flows:
         return ""
     if key is not None and not known.outlives(key):
@@ -157,7 +163,9 @@ def nothing_left(items: tuple[Item, ...], meaning: Meaning, manner: Manner, work
             idle = only_for_cycles(name, manner.source, manner.target)
             return name == "N" or name in unsaid or idle
         slash = isinstance(item, Mark) and item.kind == "block_delete"
-        if isinstance(item, Statement) and needs_assignment(item, manner.source, manner.target):
+        if isinstance(item, Statement) and needs_assignment(
+            item, manner.source, manner.target, manner.saying.drop
+        ):
             return False
         return slash or (manner.crossing and is_foreign(item, manner.source, manner.target))
 

@@ -98,10 +98,14 @@ class CopiedText:
 
 @dataclass(frozen=True, slots=True)
 class Computed:
-    """A word with the number that an expression in a slot of the source line is worth."""
+    """A word with the number that an expression in a slot of the source line is worth.
+
+    `point`: it has a point also where it is a whole number.
+    """
 
     address: str
     slot: int
+    point: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ then a matter of whole arrays.
 from __future__ import annotations
 
 from gcxform.dialect.dialect import LINEAR
+from gcxform.dialect.saying import ABORT, EXECUTED, LASTING
 from gcxform.emit.codewords import CodeWords
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import (
@@ -159,8 +160,9 @@ class TemplateWriter:
             self.draft.fields.append(CopiedText(slot))
         elif not crossing or lasts_in(item, self.source, self.target):
             self.draft.literal(lead, self.text[item.start : item.end])
-        elif lost := needs_assignment(item, self.source, self.target):
-            self.draft.refuse(item, lost)
+        elif lost := needs_assignment(item, self.source, self.target, self.manner.saying.drop):
+            hint = f'drop = ["{LASTING}"] in [output] leaves it out' if "lasts" in lost else ""
+            self.draft.refuse(item, lost, hint)
 
     def _check_same(self, item: Item, name: str) -> None:
         """Raise CannotSayError where the target is another dialect."""
@@ -186,7 +188,9 @@ class TemplateWriter:
         executed = self.source.text_rule.executes(text) and self.source is not self.target
         said = self.manner.saying.instead(text)
         if executed and said and not self.target.text_rule.executes(text):
-            self.draft.raise_at(item, f"{self.target.name} does not execute this comment")
+            hint = f'drop = ["{EXECUTED}"] in [output] makes it a comment that does nothing'
+            message = f"{self.target.name} does not execute this comment"
+            self.draft.raise_at(item, message, hint if ABORT not in text.upper() else "")
         return comment_for(self.source, self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
@@ -276,9 +280,12 @@ class TemplateWriter:
             self.draft.raise_at(word, f"{self.target.name} has no word {word.address}")
         if word.address == "O" and not program_number_fits(word, self.target):
             self.draft.refuse(word, "this program number")
-        if isinstance(word.value, Expression) and self.source is not self.target:
+        crosses = self.source is not self.target
+        pointed = word.address in self.source.axes and self.target.point_rule.required
+        pointed &= crosses and not self.source.point_rule.required
+        if pointed or (isinstance(word.value, Expression) and crosses):
             self.draft.literal(lead, "")
-            self.draft.fields.append(Computed(word.address, slot))
+            self.draft.fields.append(Computed(word.address, slot, pointed))
             return
         if isinstance(word.value, Expression) and self._text_slot(word.value) >= 0:
             self.draft.literal(lead, self.draft.said(word.start, word.value.start))

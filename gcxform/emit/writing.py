@@ -289,7 +289,8 @@ class Writing:
             where = self.task.location(int(lines[np.argmax(inexact)]))
             message = f"{field.address} is computed, and has more decimals than can be written"
             raise InputError.one("GX501", message, where)
-        renderer.number(b"", field.address, whole, decimals, np.ones(len(lines), np.bool_), False)
+        everywhere = np.ones(len(lines), np.bool_)
+        renderer.number(b"", field.address, whole, decimals, everywhere, field.point)
 
     def _other_number(
         self, field: Converted | Preset, lines: Ints, inch: bool, renderer: Renderer

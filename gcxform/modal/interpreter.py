@@ -45,7 +45,8 @@ class Interpreted:
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
     0, that set where something counts from, and the state of the frames behind each. `homed` are
-    lines that only go to a point of the machine which is known: its code, and the machine's frame.
+    lines that only go to a point of the machine which is known: its code, the machine's frame, and
+    whether they name no axis.
     `lengths` are the lines that put a tool length in force, and its vector, mm.
     """
 
@@ -60,7 +61,7 @@ class Interpreted:
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
-    homed: Mapping[int, tuple[str, Frame]] = field(default_factory=dict)
+    homed: Mapping[int, tuple[str, Frame, bool]] = field(default_factory=dict)
     lengths: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
 
 

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.codes import Effect
+from gcxform.dialect.saying import HOME
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import FRAMING, PRESETS
 from gcxform.modal.meaning.sorting import only_for_cycles
@@ -48,11 +49,19 @@ class EventProof:
             return told
         if saying.length_said:  # it has a block of its own, before its line
             told = tuple(sorted(told, key=lambda e: (e.line, not saying.lengthens(e.what))))
-        return tuple(self._as_there(event) for event in told if saying.instead(event.what))
+        return tuple(self._as_there(event, path) for event in told if saying.instead(event.what))
 
-    def _as_there(self, event: Event) -> Event:
-        """Return an event of the source as the target names it."""
+    def _as_there(self, event: Event, path: Toolpath) -> Event:
+        """Return an event of the source as the target names it.
+
+        A way home that names no axis has one row, for it goes over no point.
+        """
         saying = self.context.saying
+        code = self.context.source.codes.get(event.what)
+        if code is not None and code.act == HOME:
+            bare = int((path.source == event.line).sum()) == 1
+            moves = saying.moves_home(event.what, bare)
+            return replace(event, what=saying.machine) if moves else event
         words = saying.words_of(event.what, "".join(address for address, _ in event.values))
         said = saying.instead(event.what)
         values = tuple((a, value) for a, value in event.values if a in words)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 SAYING, OWN = "gcxform/dialect/saying.py", "gcxform/emit/own_blocks.py"
+LEFT = "tests/test_left_out_across.py::"
 LENGTHS = "tests/test_lengths_across.py::"
 HERE = "tests/test_said_otherwise.py"
 
@@ -134,5 +135,26 @@ MUTATIONS = (
         "reading = replace(reading, inert_m=frozenset())",
         "pass",
         f"{LENGTHS}test_what_is_inert_on_one_machine_is_not_said_of_another",
+    ),
+    Mutation(
+        "saying: a program that is ended by a comment goes on",
+        SAYING,
+        "EXECUTED in self.drop and ABORT not in what.upper()",
+        "EXECUTED in self.drop",
+        f"{LEFT}test_a_comment_that_ends_the_program_stays",
+    ),
+    Mutation(
+        "saying: numbers that stand keep no point",
+        "gcxform/emit/templates.py",
+        "pointed &= crosses and not self.source.point_rule.required",
+        "pointed = False",
+        f"{LEFT}test_numbers_that_stand_have_points_where_they_count_steps_without",
+    ),
+    Mutation(
+        "saying: a way home of no axis is written for who refuses it",
+        SAYING,
+        "(unknown and bool(self.machine))",
+        "False",
+        f"{LEFT}test_a_way_home_of_all_axes_names_them_where_it_has_to",
     ),
 )

@@ -79,7 +79,7 @@ class Track:
             self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self.zeroed: list[tuple[int, FrameState]] = []
-        self.homed: dict[int, tuple[str, Frame]] = {}
+        self.homed: dict[int, tuple[str, Frame, bool]] = {}
         self.lengths: dict[int, tuple[float, float, float]] = {}
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)

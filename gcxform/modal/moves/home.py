@@ -112,7 +112,7 @@ def _note_machine(
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
     frame = Frame(frames.work, shift, (frames.first,) * len(track.axes))
-    track.homed[line] = code.split()[0], frame
+    track.homed[line] = code.split()[0], frame, not words
 
 
 def _let_go_of_length(track: Track, line: int, code: str) -> None:

@@ -1,0 +1,91 @@
+"""What may be left out for another control, numbers with points, ways home of all axes."""
+
+from __future__ import annotations
+
+import pytest
+
+import gcxform as gx
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+HOMES = {"G28": {"X": 10.0, "Y": 20.0, "Z": 450.0}}
+OFFSETS = {"G54": {"X": 1.0, "Y": 2.0, "Z": 100.0}}
+START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0}, homes=HOMES, work_offsets=OFFSETS)
+HEAD = "G21 G90 G94 G17 G54\n"
+
+
+def said(source, target, blocks, **options):
+    pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), START, **options)
+    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
+    assert result.certificate.verified
+    return result.text.decode().split("\n")[1:-2]
+
+
+def refused(source, target, blocks, **options):
+    with pytest.raises(gx.GcxformError) as error:
+        said(source, target, blocks, **options)
+    return error.value.diagnostics[0]
+
+
+OPTIONS = [
+    ("#45=3", "#", ["G0 X1."]),
+    ("(PROBEOPEN a.txt)", "(...)", ["(PROBEOPEN a.txt)", "G0 X1."]),
+]
+
+
+@pytest.mark.parametrize(("block", "name", "expected"), OPTIONS)
+def test_what_is_no_code_and_may_be_left_out(block, name, expected):
+    blocks = f"{block}\nG0 X1."
+    found = refused("linuxcnc", "fanuc", blocks)
+    assert f'drop = ["{name}"] in [output]' in found.hint
+    assert said("linuxcnc", "fanuc", blocks, drop=frozenset({name})) == expected
+
+
+def test_a_comment_that_ends_the_program_stays():
+    found = refused("linuxcnc", "fanuc", "(ABORT, X)\nG0 X1.", drop=frozenset({"(...)"}))
+    assert (found.code, found.hint) == ("GX501", "")
+
+
+def test_an_assignment_that_does_something_stays():
+    found = refused("haas", "fanuc", "#3006=1\nG0 X1.", drop=frozenset({"#"}))
+    assert found.code == "GX501"
+
+
+POINTS = [
+    ("grbl", "haas", "G90 G53 G0 Z-8", "G90 G53 G0 Z-8."),
+    ("linuxcnc", "fanuc", "G92 X1 Y2.50", "G92 X1. Y2.5"),
+    ("linuxcnc", "grbl", "G92 X1 Y2.50", "G92 X1 Y2.50"),
+]
+
+
+@pytest.mark.parametrize(("source", "target", "block", "expected"), POINTS)
+def test_numbers_that_stand_have_points_where_they_count_steps_without(
+    source, target, block, expected
+):
+    assert said(source, target, f"{block}\nG0 X5. Y5.")[0] == expected
+
+
+BARE = [
+    ("fanuc", "G0 G28 M8", "G0 M8 G53 X10. Y20. Z450."),
+    ("fanuc", "G0 G28 G91 Z0.", "G0 G28 G91 Z0."),
+    ("linuxcnc", "G0 G28", "G0 G53 X10. Y20. Z450."),
+]
+
+
+@pytest.mark.parametrize(("target", "block", "expected"), BARE)
+def test_a_way_home_of_all_axes_names_them_where_it_has_to(target, block, expected):
+    assert said("haas", target, block)[0] == expected
+
+
+MODALS = [
+    ("G41 G1 X1. F100.", "grbl", 'put the pass "cutter-comp" before'),
+    ("G10 L2 P2 X1. R30.", "grbl", 'put the pass "offsets" before'),
+    ("G5.1 X1. Y1. I1. J0.", "fanuc", "segment"),
+    ("G96 S100 D1000", "grbl", 'drop = ["G96"]'),
+]
+
+
+@pytest.mark.parametrize(("block", "target", "way"), MODALS)
+def test_a_refusal_says_what_leads_out(block, target, way):
+    assert way in refused("linuxcnc", target, f"G1 X0.5 F100.\n{block}").hint
