@@ -61,7 +61,7 @@ class EventProof:
         if code is not None and code.act == HOME:
             bare = int((path.source == event.line).sum()) == 1
             moves = saying.moves_home(event.what, bare)
-            return replace(event, what=saying.machine) if moves else event
+            return replace(event, what=saying.machine, values=()) if moves else event
         words = saying.words_of(event.what, "".join(address for address, _ in event.values))
         said = saying.instead(event.what)
         values = tuple((a, value) for a, value in event.values if a in words)
