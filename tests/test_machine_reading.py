@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from cli_kit import call
 
+import gcxform as gx
+from gcxform.machine.file import load_machine
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
@@ -35,6 +38,17 @@ length = 50.0
 user-codes = "keep"
 """
 HEAD = "G21 G90 G94 G17\nG0 X0 Y0 Z5\nG1 Z1 F100\n"  # three lines
+
+
+def test_what_is_known_is_that_of_each_plan(tmp_path):
+    """What one plan has worked out says nothing of a plan that was made of it."""
+    file = tmp_path / "machine.toml"
+    file.write_text(MACHINE)
+    alone = gx.Pipeline.parse("absolute", "linuxcnc")
+    assert (alone.machine_reading.work_offsets, alone._repeated) == ({}, 1)
+    on_machine = replace(alone, machine=load_machine(file, default_registry().machines))
+    assert on_machine.machine_reading.work_offsets.keys() == {"G54", "G55"}
+    assert (replace(alone, passes=())._repeated, alone.machine_reading.work_offsets) == (2, {})
 
 
 @pytest.fixture

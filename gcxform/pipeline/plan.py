@@ -271,7 +271,7 @@ class Plan:
             source = without_tip_codes(source, self.source.tip_rule.codes)
         return source, dialect
 
-    @property
+    @cached_property
     def machine_reading(self) -> Reading:
         """What is known of programs before they are read, with what the machine file says."""
         reading = self.reading if self.machine is None else self.reading.on(self.machine)
@@ -341,7 +341,7 @@ class Plan:
         """
         return self._repeated * self.manner.rounding(inch)
 
-    @property
+    @cached_property
     def _repeated(self) -> int:
         """How often a rounding can count: twice where blocks may be incremental."""
         return 1 if ABSOLUTE in facts_after(self.path_passes) else 2

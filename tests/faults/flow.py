@@ -689,6 +689,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/oword-labels]",
     ),
     Mutation(
+        "kept O-words: labels of a file that was called later are given again",
+        "gcxform/flow/kept_owords.py",
+        "if arranged is not self.counted:",
+        "if self.counted is None:",
+        "tests/test_corpus.py::test_case[flow/oword-labels-of-a-file]",
+    ),
+    Mutation(
         "kept O-words: a subprogram returns on one way",
         "gcxform/flow/kept_owords.py",
         "return any(each.depth == len(self.run.calls) for each in self.inside)",

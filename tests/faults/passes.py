@@ -310,7 +310,7 @@ MUTATIONS = (
         "plugins/gcxform_plugins/passes/volumetric/undo/machine.py",
         "feed / (part - before), feed)",
         "feed, feed)",
-        f"{KIT}[volumetric]",
+        f"{KIT}[volumetric-3]",
     ),
     # feed
     Mutation(
