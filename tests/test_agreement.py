@@ -14,8 +14,9 @@ from oracles.canon import parsed
 from oracles.toolpaths import difference, read
 
 BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "agreement.py"
-PARTS = 8  # of the corpus, each a test
-AGREEING = 25  # programs of each part of the corpus: fewer would mean that less can be read
+AGREEING = (29, 24, 24, 28, 28, 27, 32, 26)
+"""Programs that agree in each part of the corpus: fewer would mean that less can be read."""
+PARTS = len(AGREEING)
 PROGRAM = b"""G21 G90 G17 G94 F100
 T1 M6
 M3 S500
@@ -94,7 +95,7 @@ def test_nothing_real_is_read_otherwise_than_by_linuxcnc(first, shared):
     found = module.outcomes(shared / "corpus", slice(first, None, PARTS))
     assert [one for one in found if one.kind == module.DISAGREE] == []
     kinds = Counter(one.kind for one in found)
-    assert kinds[module.AGREE] >= AGREEING, kinds
+    assert kinds[module.AGREE] >= AGREEING[first], kinds
 
 
 def test_a_program_agrees_with_what_linuxcnc_printed():
