@@ -52,24 +52,24 @@ def run(name: str, program: str, most: float, chain: str = "absolute") -> Road:
 
 
 ROADS = (
-    Road("straight", "straight", ("run", *LINUXCNC, "-x", "absolute"), 3.3, STRAIGHT_GOAL),
+    Road("straight", "straight", ("run", *LINUXCNC, "-x", "absolute"), 3.0, STRAIGHT_GOAL),
     run("comments", "comments", 5.0),
     run("expressions", "expressions", 4.0),
-    run("assignments", "assignments", 6.5),
-    run("loop", "loop", 4.0),
+    run("assignments", "assignments", 6.0),
+    run("loop", "loop", 3.2),
     run("loop written out", "written-out", 8.0),
-    run("frames", "frames", 14.0),
-    run("returns and tools", "returns", 13.0),
+    run("frames", "frames", 5.5),
+    run("returns and tools", "returns", 7.0),
     run("arcs", "circles", 3.0),
     run("drilling", "drilling", 5.0),
     run("drilling, cycles", "drilling", 5.0, "cycles | absolute"),
-    run("cutter compensation", "contours", 24.0, "cutter-comp | absolute"),
+    run("cutter compensation", "contours", 8.5, "cutter-comp | absolute"),
     run("pass arcs", "chords", 5.0, "arcs tolerance=0.005"),
     Road("compare", "straight", ("compare", "-f", "linuxcnc"), 3.5, beside="nearby"),
     Road("info", "straight", ("info", "-f", "linuxcnc"), 2.0),
-    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 70.0, GOAL,
+    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 100.0, GOAL,
          "siemens-twin"),
-    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 40.0, GOAL,
+    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 45.0, GOAL,
          "klartext-twin"),
 )  # fmt: skip
 
