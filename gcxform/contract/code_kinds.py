@@ -7,7 +7,7 @@ from typing import Annotated, Final
 
 from gcxform.contract.option_kinds import Argument, Around, Kind, RefusedError, written
 
-CODE: Final = r"[GM](0|[1-9][0-9]*)(\.[1-9])?|#|\(\.\.\.\)"
+CODE: Final = r"[GM](0|[1-9][0-9]*)(\.[1-9])?|#|\(\)"
 """A code; or assignments that last longer than the program, or comments that are executed."""
 M_CODE: Final = r"M(0|[1-9][0-9]*)"
 

@@ -40,7 +40,7 @@ STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
 NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})
 ENDS = "no-"
 SWITCHED = "/"
-LASTING, EXECUTED = "#", "(...)"
+LASTING, EXECUTED = "#", "()"
 """What is no code and may be left out: assignments that last, and comments that are executed."""
 
 
