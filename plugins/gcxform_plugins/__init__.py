@@ -32,6 +32,7 @@ def gcxform_dialects() -> list[type[gx.Dialect]]:
     grown += [FluidNC, GrblHAL, pc.Centroid, pc.Mach3, pc.Mach4, pc.Masso, pc.Uccnc]
     grown += [industrial.Brother, industrial.Gsk, industrial.Hurco, industrial.Mazak]
     grown += [industrial.Mitsubishi, industrial.Okuma]
+    grown += [printers.Marlin2]
     return [*grown, printers.Klipper, printers.Prusa, printers.Rrf, printers.Smoothieware]
 
 

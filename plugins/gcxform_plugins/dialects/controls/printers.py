@@ -11,7 +11,8 @@
 | other words on a line | refused | `NAME=...`: refused | refused | refused |
 
 Sources: `gcode_move.py`, `gcode_arcs.py`, `firmware_retraction.py` of Klipper, as executed;
-RepRapFirmware 3.5, Prusa-Firmware and Smoothieware, as read. How fine arcs are cut is not known.
+RepRapFirmware 3.5, Prusa-Firmware and Smoothieware, as read; for `marlin2`, whose E is as that of
+Smoothie, the pages of Marlin on M82, M83, G90 and G91. How fine arcs are cut is not known.
 """
 
 from __future__ import annotations
@@ -31,6 +32,14 @@ M_WITHOUT_R: Mapping[int, gx.MCode] = {
 }
 """R is no radius here, and no other word: an arc by one would not be cut."""
 LIFTS = "it retracts, and lifts Z where the printer is set so"
+
+
+class Marlin2(Marlin):
+    """Marlin 2, by its documentation: E is a distance by the last of M83, M82, G90, G91."""
+
+    name = "marlin2"
+    kin = "marlin"
+    motion_rule = replace(Marlin.motion_rule, extruder="last")
 
 
 class Rrf(Marlin):
