@@ -19,6 +19,7 @@ class ArcRule:
     turns     the word that counts the turns of an arc (n - 1 full turns beyond the arc itself)
     circle_needs_axis_word   whether a full circle has to name an axis of its plane
     drops_third   a centre word along the normal of the plane is dropped, beside one in the plane
+    third_is_zero such a word is taken where it is 0
     centres_open  how I, J and K count is a setting of the control, until G90.1 or G91.1 says it
     """
 
@@ -32,6 +33,7 @@ class ArcRule:
     turns: str = ""
     circle_needs_axis_word: bool = False
     drops_third: bool = False
+    third_is_zero: bool = False
     centres_open: bool = False
 
 

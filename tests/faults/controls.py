@@ -88,6 +88,13 @@ MUTATIONS = (
         TWO,
     ),
     Mutation(
+        "controls: any third centre is nothing",
+        "gcxform/modal/moves/arcs.py",
+        "self.rule.third_is_zero & (self.words.offset[:, self.normal] == 0)",
+        "self.rule.third_is_zero & has[:, self.normal]",
+        CASE.format("uccnc-third-centre"),
+    ),
+    Mutation(
         "controls: a UCCNC waits in seconds",
         f"{TABLES}/pc.py",
         'dwell={"P": 0.001}',

@@ -23,8 +23,8 @@ MUTATIONS = (
     Mutation(
         "reading: the centre word that is dropped makes an arc alone",
         "gcxform/modal/moves/arcs.py",
-        "~(in_plane & self.rule.drops_third)",
-        "~(has.any(axis=1) & self.rule.drops_third)",
+        "~(in_plane & (self.rule.drops_third | nothing))",
+        "~(has.any(axis=1) & (self.rule.drops_third | nothing))",
         CORPUS,
     ),
     Mutation(

@@ -147,7 +147,8 @@ class _Part:
             hint="begin with a line to a known point, or say "
             f"start = {{ {'XYZ'[self.first]} = ..., {'XYZ'[self.second]} = ... }} in [input]",
         )
-        across = has[:, self.normal] & ~(in_plane & self.rule.drops_third)
+        nothing = self.rule.third_is_zero & (self.words.offset[:, self.normal] == 0)
+        across = has[:, self.normal] & ~(in_plane & (self.rule.drops_third | nothing))
         self._refuse(
             across,
             "GX304",

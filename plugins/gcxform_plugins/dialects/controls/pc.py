@@ -6,12 +6,13 @@ page. What is only recalled is refused, or a setting.
 | what | Mach3, Mach4 | UCCNC | Masso | Centroid CNC12 |
 |---|---|---|---|---|
 | I, J, K | a setting, until G90.1 or G91.1 (post) | from the start (post) | as UCCNC | as UCCNC |
+| K0 of an arc in XY | refused | is nothing (post) | refused | refused |
 | G4 P | seconds or ms, a setting: it stays | ms (post) | a setting: it stays | s (manual) |
 | units at start | taken as G21 | taken as G21: posts write none | G21 | G20 (manual) |
 | G28.1 | moves to the switches: refused | refused | refused | refused |
-| G70, G71 | units: refused | refused | refused | refused |
+| G70, G71, G12, G13 | units, pockets: refused | refused | refused | refused |
 | turning, scaling, mirrors | refused | refused | refused | refused |
-| cycles, G12, G13 | steps are not known: refused | also G33.1, G33.2 | refused | also G74 |
+| cycles | kept, in blocks with a code of their own | also; G33.1, G33.2 refused | kept | kept |
 | more than six offsets | G59 P (post of Mach4): refused | none | none | none |
 | M6, other M codes | run a macro that may move | as Mach3 | as Mach3 | as Mach3 |
 | M98, G65 | refused | refused | M98 calls a file (page): refused | files: refused |
@@ -43,8 +44,11 @@ def open_dwell(name: str) -> gx.Code:
 
 
 def cycles(*numbers: int) -> Mapping[str, gx.Code]:
-    """Return canned cycles, refused by name."""
-    return {f"G{n}": v.barrier("motion", v.CYCLE, "PQRLIJK") for n in numbers}
+    """Return canned cycles: they stay as they are, and where they end is not known."""
+    return {f"G{n}": v.cuts("PQRLIJK", "motion") for n in numbers}
+
+
+STEPS = {f"G{n}": "its steps are not known: it stays" for n in (73, 74, 76, *range(81, 90))}
 
 
 class Mach3(gx.Dialect):
@@ -87,7 +91,7 @@ class Mach3(gx.Dialect):
     settings: ClassVar[tuple[gx.Setting, ...]] = (
         gx.Setting("arc-centres", "how I, J and K count (IJ Mode)", ("incremental",)),
     )
-    differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT}
+    differs: ClassVar[Mapping[str, str]] = {**STEPS, "G4": DWELL_UNIT}
     text_rule = gx.TextRule(active_comments=("MSG,",), telling_comments=("MSG,",))
     block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True, takes="PQS"))
     arc_rule = gx.ArcRule(absolute=0.002, in_inch=2.54, centres_open=True)
@@ -111,6 +115,7 @@ class Uccnc(Mach3):
     """UCCNC, as posts write for it."""
 
     name = "uccnc"
+    grammar = ("gcxform_grammars", "uccnc")
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Mach3.codes.items() if name not in ("G64", "G84")},
         **{code: v.barrier("motion", v.SYNCHRONISED, "KQ") for code in ("G33.1", "G33.2")},
@@ -119,21 +124,26 @@ class Uccnc(Mach3):
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
         ("G2", "G3"), "I, J and K count from the start of the arc, but after G90.1"
     )
-    differs: ClassVar[Mapping[str, str]] = {"point_rule.dwell": "P of G4 is in ms (post)"}
+    differs: ClassVar[Mapping[str, str]] = {
+        **STEPS,
+        "point_rule.dwell": "P of G4 is in ms (post)",
+    }
     settings = ()
     text_rule = gx.TextRule()
     point_rule = gx.PointRule(dwell={"P": 0.001})
-    arc_rule = gx.ArcRule(absolute=0.002)
+    arc_rule = gx.ArcRule(absolute=0.002, third_is_zero=True)
 
 
 class Masso(Uccnc):
     """Masso G3, as posts write for it."""
 
     name = "masso"
+    arc_rule = gx.ArcRule(absolute=0.002)
+    grammar = Mach3.grammar
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
         "G4": open_dwell("Masso"),
-        "G84": v.barrier("motion", v.CYCLE, "PQRL"),
+        **cycles(84),
     }
     differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT, **Uccnc.differs}
 
@@ -142,6 +152,7 @@ class Centroid(Uccnc):
     """Centroid CNC12, milling."""
 
     name = "centroid"
+    arc_rule = gx.ArcRule(absolute=0.002)
     grammar = SEMICOLON
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
@@ -152,6 +163,7 @@ class Centroid(Uccnc):
     }
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "units": "G20"}
     differs: ClassVar[Mapping[str, str]] = {
+        **STEPS,
         "initial": "a program starts in G20 (list of Centroid's modal groups)",
         "point_rule.dwell": "P of G4 is in seconds (manual)",
     }
