@@ -62,6 +62,12 @@ def test_the_surface_is_that_of_the_pattern():
     assert [end[2] for end in ends[1:5]] == [20, -7, -12, 20]
 
 
+def test_a_cycle_may_be_run_by_two_patterns():
+    row = ROW.format(1, 0, COMMON)
+    path, _ = moves(CENTRE, row, row)
+    assert (path.kind == 1).sum() == 12
+
+
 @pytest.mark.parametrize(
     ("lines", "why"),
     [
@@ -75,6 +81,7 @@ def test_the_surface_is_that_of_the_pattern():
         ((CENTRE, "L Z+50 FMAX", ROW.format(1, 0, COMMON)), "from elsewhere"),
         ((ROW.format(1, 0, COMMON),), "no cycle"),
         ((CENTRE, "Q201 = -5", "CYCL CALL"), "no cycle"),
+        ((CENTRE, ROW.format(1, 0, COMMON), "CYCL CALL"), "lacks"),
     ],
 )
 def test_what_is_not_certain_is_refused(lines, why):

@@ -28,6 +28,13 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: what a pattern was told is nothing to the cycle behind it",
+        CYCLES,
+        "        self.hole = {n: v for n, v in self.hole.items() if told.get(n, v) == v}\n",
+        "",
+        "tests/test_klartext_holes.py::test_what_is_not_certain_is_refused",
+    ),
+    Mutation(
         "klartext: TRANS DATUM and cycle 7 shift together",
         CYCLES,
         "if match is None or (self.by_cycle and any(map(float, self.shift.values()))):",

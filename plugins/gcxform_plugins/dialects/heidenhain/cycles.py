@@ -266,6 +266,8 @@ class Cycles(Parameters):
             self.place |= {"X": x, "Y": y}
             blocks += [f"G0 X{x} Y{y}", *self._hole(item, hole)]
         self.moved |= {"X", "Y"}
+        self.given(told.items())  # whether they count for a cycle that is called next is not known
+        self.hole = {n: v for n, v in self.hole.items() if told.get(n, v) == v}
         return blocks
 
     def _stroke(self, bottom: Decimal, feed: Decimal, dwell: Decimal) -> list[str]:
