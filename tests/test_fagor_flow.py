@@ -161,8 +161,8 @@ def test_it_is_written_back_with_positions_for_steps():
     ],
 )
 def test_a_line_that_may_be_executed_again_is_not_changed(lines):
-    with pytest.raises(gx.InputError, match="cannot be said"):
-        written(HEAD + "\n".join(lines) + "\nM30\n")
+    text = HEAD + "\n".join(lines) + "\nM30\n"
+    assert written(text)[0] == text
 
 
 def test_cycles_and_compensation_keep_the_moves_behind_them():
@@ -176,3 +176,17 @@ def test_a_subroutine_is_executed_behind_a_structure_that_is_kept():
     lines = ["P9=V.A.X", "$IF P9 > 2", "X1", "$ENDIF", "#PCALL STEP P1=3", "G0 G90 X1"]
     text, _ = written(sub + HEAD + "\n".join([*lines, "X2I", "M30"]) + "\n")
     assert text.splitlines()[-2:] == ["X3", "M30"]
+
+
+def test_lines_of_a_subroutine_that_may_be_called_once_more_are_not_changed():
+    sub = "%L STEP\nG1 X3I\n#RET\n%MAIN\n"
+    lines = ["G1 G90 X1 Y1", "LL STEP", "$IF V.A.X > 5", "[A] LL STEP", "$ENDIF"]
+    text = sub + HEAD + "\n".join([*lines, "M30"]) + "\n"
+    assert written(text)[0] == text
+    assert "G1 X4" in written(sub + HEAD + "\n".join([*lines[:2], "M30"]) + "\n")[0]
+
+
+def test_behind_a_call_that_is_kept_the_modes_are_said_before_anything_changes():
+    lines = ["LL NOWHERE", "X5 Y5 Z5", "X2I", "G1 G90 X2 Y2 Z2", "X2I"]
+    text, _ = written(HEAD + "\n".join([*lines, "M30"]) + "\n")
+    assert text.splitlines()[2:-1] == [*lines[:4], "X4"]

@@ -128,8 +128,8 @@ MUTATIONS = (
     Mutation(
         "fagor: lines of a loop that goes on are changed",
         PROGRAMS,
-        "return None if self.tied else spelled",
-        "return spelled",
+        "return None if self.tied or line in self.frozen else spelled",
+        "return None if line in self.frozen else spelled",
         FLOWS,
     ),
     Mutation(
@@ -137,6 +137,13 @@ MUTATIONS = (
         PROGRAMS,
         " or self.line in self.ran:",
         ":",
+        FLOWS,
+    ),
+    Mutation(
+        "fagor: lines of a subroutine that may be called again are changed",
+        PROGRAMS,
+        "return None if self.tied or line in self.frozen else spelled",
+        "return None if self.tied else spelled",
         FLOWS,
     ),
     Mutation(

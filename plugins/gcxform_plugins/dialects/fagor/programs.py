@@ -46,7 +46,9 @@ FROM_HERE = re.compile(
 """What changes the meaning of all words behind it, or repeats lines."""
 POLES = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:30|17|18|19|5[3-9]|92|15[89])(?![0-9.])|\$", re.I)
 """What may leave the pole elsewhere."""
-CALLS = re.compile(r"[ \t]*(?:N[0-9: \t]*)?(?:LL?[ \t]|#P?CALL|#MCALL|#EXEC)", re.IGNORECASE)
+CALLS = re.compile(
+    r"(?<![A-Z0-9_#$.])(?:LL?(?![A-Z])|#P?CALL|#MCALL|#MDOFF|#EXEC|#EXBLK)", re.IGNORECASE
+)
 LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|30)(?![0-9])", re.I)
 STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
 STATE = (
@@ -62,6 +64,7 @@ class Programs(Flow):
     unsaid  what has to be said before the next move, as it may have been changed: G90, and a motion
     maybe   lines of a structure that is kept: they may be executed
     ran     lines that were executed, and not kept;  named: axes of the program
+    frozen  lines of subroutines that what is kept may call
     gone    those that may stand anywhere
     """
 
@@ -77,6 +80,7 @@ class Programs(Flow):
         self.unsaid: set[str] = set()
         self.beside = False
         self.ran: set[int] = set()
+        self.frozen: set[int] = set()
         self.gone: set[str] = set()
         self.named = tables.AXES & set("".join(map(code, self.lines)).upper())
         self.hangs = any(HANGS.search(code(text)) for text in self.lines)
@@ -136,7 +140,7 @@ class Programs(Flow):
         for line in range(self.line + 1, len(self.lines)):
             text = code(self.lines[line]).strip()
             if text:
-                flows = "$" in text or "#" in text or CALLS.match(text) is not None
+                flows = "$" in text or "#" in text or CALLS.search(text) is not None
                 return flows or HANGS.search(text) is not None
         return False
 
@@ -196,8 +200,10 @@ class Programs(Flow):
         self.gone = set(self.named)
         self.bars, self.plainly = {}, False
         self.polar = None
-        self.pole = None if POLES.search(text) or CALLS.match(text) else self.pole
-        opaque = CALLS.match(text) is not None or "$" in text or self.line in self.maybe
+        self.pole = None if POLES.search(text) or CALLS.search(text) else self.pole
+        if CALLS.search(text):
+            self.frozen |= {line for lines in self.local.values() for line in lines}
+        opaque = CALLS.search(text) is not None or "$" in text or self.line in self.maybe
         opaque |= any(c[:1] == "M" and c not in tables.M_CODES for c in codes)
         if opaque or "=" in text:
             self.known = dict.fromkeys(self.known)
@@ -257,11 +263,11 @@ class Programs(Flow):
 
     def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
         """Return a line that stands for new blocks; None where that is not known."""
-        return None if self.tied else spelled(self.lines[line], blocks)
+        return None if self.tied or line in self.frozen else spelled(self.lines[line], blocks)
 
     def replaced(self, line: int, said: Sequence[str]) -> str | None:
         """Return the lines that stand for what a line became, with its head and its comment."""
-        if self.tied:
+        if self.tied or line in self.frozen:
             return None
         text = self.lines[line]
         head, bare = HEAD.match(text), code(text).rstrip()
