@@ -9,6 +9,8 @@ page. What is only recalled is refused, or a setting.
 | K0 of an arc in XY | refused | is nothing (post) | refused | refused |
 | G4 P | seconds or ms, a setting: it stays | ms (post) | a setting: it stays | s (manual) |
 | units at start | taken as G21 | taken as G21: posts write none | G21 | G20 (manual) |
+| G10, G52, G92 | read | refused: no post writes them | refused | refused |
+| G28, G30 | read | refused | G28 read | read |
 | G28.1 | moves to the switches: refused | refused | refused | refused |
 | G70, G71, G12, G13 | units, pockets: refused | refused | refused | refused |
 | turning, scaling, mirrors | refused | refused | refused | refused |
@@ -29,6 +31,8 @@ from typing import ClassVar
 import gcxform as gx
 from gcxform import vocabulary as v
 
+SHIFTS = ("G10", "G52", "G92", "G92.1")
+RECALLED = "it shifts the coordinates, in a way that no post for this control shows"
 SWITCHES = "it moves to the switches"
 UNIT = "it changes the unit on some controls, and cuts on others"
 POCKET = "it cuts a pocket in a way of its own"
@@ -119,6 +123,8 @@ class Uccnc(Mach3):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Mach3.codes.items() if name not in ("G64", "G84")},
         **{code: v.barrier("motion", v.SYNCHRONISED, "KQ") for code in ("G33.1", "G33.2")},
+        **{code: v.barrier("non-modal", RECALLED, "XYZABCLP") for code in SHIFTS},
+        **{code: v.barrier("non-modal", v.HOME, "XYZABC") for code in ("G28", "G30")},
         "G4": v.ISO["G4"],
     }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(
@@ -143,6 +149,7 @@ class Masso(Uccnc):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
         "G4": open_dwell("Masso"),
+        "G28": Mach3.codes["G28"],
         **cycles(84),
     }
     differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT, **Uccnc.differs}
@@ -157,6 +164,7 @@ class Centroid(Uccnc):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
         **cycles(74, 84),
+        "G28": Mach3.codes["G28"],
         "G30": v.frame("non-modal", "home", "P"),
         "G64": v.inert("path", act="blend"),
         "G65": v.barrier("non-modal", v.CALL, "ABCDEFHIJKLMPQRSTXYZ"),
