@@ -23,7 +23,7 @@ DIALECTS = default_registry().dialects
 WORDS, SIEMENS = DIALECTS["linuxcnc"], DIALECTS["siemens"]
 TOOLS = {n: Tool(length=10.0 * n, radius=1.0) for n in range(1, 9)}
 START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
-READING = Reading(START, tools=TOOLS, control={"tool-length-axis": "Z"})
+READING = Reading(START, tools=TOOLS, control={"tool-length-axis": "Z"}, block_delete="execute")
 EXAMPLE = Path(__file__).parents[1] / "examples" / "bracket"
 HEAD = "G21 G17 G90 G94 G49 G54\n"
 
@@ -45,6 +45,8 @@ IDIOMS = [
     ("(alone)", ["; alone"]),
     ("N10 G0 X1.", ["N10 G0 X1"]),
     ("T3 M6\nG43 H3\nG0 X1. Y2. Z3.", ["T3 M6", "D1", "G0 X1 Y2 Z3"]),
+    ("T3 M6\nT4\nM5\nM6\nG43 H4", ["T3 M6", "T4", "M5", "M6", "D1"]),
+    ("/G0 X1.", ["/G0 X1"]),
     ("G4 P1.5", ["G4 F1.5"]),
     ("G0 X10. Y0.\nG2 X20. Y10. R10. F100.", ["G0 X10 Y0", "G2 X20 Y10 I10 J0 F100"]),
     (

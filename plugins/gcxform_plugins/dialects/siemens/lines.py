@@ -6,6 +6,7 @@ is read again, and has to be the program that was written: so nothing here needs
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from decimal import Decimal
 
@@ -30,6 +31,7 @@ SAME = frozenset(
     )
 )
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
+SLASH = re.compile(r"[ \t]*(/[0-9]?)")
 OWN = (17, 128, 129, 9000)
 NO_LENGTH = "0"
 
@@ -53,13 +55,16 @@ class Lines(gx.Speller):
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         comments, words = gx.Speller.parts(block)
-        found = [*self._said(words)] if words else []
+        slash = SLASH.match(block)
+        found = [f"{slash[1]}{line}" if slash else line for line in self._said(words)]
         if comments:
             text = self.comment + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
 
     def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
+        if not words:
+            return
         names = [letter + text_of(Decimal(text)) for letter, text in words]
         values = dict(words)
         self._check_m(names)
@@ -91,7 +96,9 @@ class Lines(gx.Speller):
             if not self.tool:
                 raise gx.UnspeakableError("M6, and which tool it takes is not said before")
             self.in_spindle, self.waits = self.tool, bool(self.length)
-            yield f"{number}T{self.tool} M6"
+            yield f"{number}T{self.tool} M6" if "T" in values else f"{number}M6"
+        elif "T" in values:
+            yield f"{number}T{self.tool}"
         if "G43" in names:
             self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
         elif "G49" in names:
@@ -120,7 +127,7 @@ class Lines(gx.Speller):
                 yield name
             elif letter in LETTERS:
                 yield LETTERS[letter] + (text_of(Decimal(text)) if letter != "N" else text)
-            elif letter == "P" and int(text) > 1:
+            elif letter == "P" and text.isdigit() and int(text) > 1:
                 yield f"TURN={int(text) - 1}"
             elif letter == "D" and text_of(Decimal(text)) != self.length:
                 raise gx.UnspeakableError("the radius of another tool than that of the length")
