@@ -28,6 +28,13 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
 MUTATIONS = (
     Mutation(
+        "klartext: values may be too large on the way",
+        PARAMETERS,
+        "        if abs(value) > LARGEST:",
+        "        if False:",
+        "tests/test_klartext_computed.py::test_what_is_too_large_on_the_way_has_no_value",
+    ),
+    Mutation(
         "klartext: what a pattern was told is nothing to the cycle behind it",
         CYCLES,
         "        self.hole = {n: v for n, v in self.hole.items() if told.get(n, v) == v}\n",

@@ -52,6 +52,12 @@ class Formula(v.Evaluator):
         self.known = known
 
     def _value(self, node: Any) -> float:
+        value = self._computed(node)
+        if abs(value) > LARGEST:
+            raise v.NoValueError("the result is too large")
+        return value
+
+    def _computed(self, node: Any) -> float:
         if isinstance(node, Token):
             return float(str(node).replace(",", "."))
         rule = rule_of(node)
@@ -90,10 +96,7 @@ class Parameters(Labels):
 
     def worth(self, node: Any) -> float:
         """Return what a formula is worth. Raises NoValueError."""
-        value = Formula(self.q).value(node)
-        if abs(value) > LARGEST:
-            raise v.NoValueError("the result is too large")
-        return value
+        return Formula(self.q).value(node)
 
     def computed(self, item: gx.Item) -> list[str]:
         """Q = formula, and FN: no block; what is set is known from here on. Raises InputError."""
