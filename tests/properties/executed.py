@@ -27,7 +27,7 @@ NOT_RESOLVED = (
     "the modes are restored here",
     "one of two coolants would go off",
     "has a value that only the control knows",
-    "only the machine knows whether it is executed",
+    "only the machine knows",
     "is computed by the machine, and would have another value",
     "nothing in the program has set #",  # it is so where a block before was skipped
     "turns the work offset in force, under",
