@@ -125,6 +125,17 @@ def test_links_to_the_input_are_seen_through(here: Path) -> None:
     assert (here / "part.nc").read_bytes() == PART
 
 
+def test_a_cause_is_said_once(here: Path) -> None:
+    """With the other lines that have it; codes are causes of their own."""
+    (here / "a.nc").write_bytes(b"G21 G90 G94 G17\nG0 X1 Y2\nX3\n")
+    words = ("run", "-f", "fanuc", "-x", "offsets", "-o", "out.nc", "a.nc")
+    said = call(*words).stderr
+    assert said.count("GX205") == 1
+    assert "also at line 3" in said
+    (here / "a.nc").write_bytes(b"G21 G90 G94 G17\nG5.5 X1.\nG44.4 X1.\n")
+    assert call(*words).stderr.count("GX201") == 2
+
+
 def test_an_empty_program(here: Path) -> None:
     (here / "empty.nc").write_bytes(b"")
     found = call(*RUN, "empty.nc")

@@ -22,7 +22,7 @@ from gcxform.cli.common.answer import ANSWER, Answer
 from gcxform.cli.common.options import ENVIRONMENT
 from gcxform.cli.common.progress import stages_shown
 from gcxform.cli.common.signals import Ended, ending
-from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all
+from gcxform.diagnostics import Diagnostic, FileError, GcxformError, Location, render_all
 from gcxform.system.inputs import visit
 from gcxform.system.stages import stage
 from gcxform.version import VERSION
@@ -38,6 +38,8 @@ FOUND: Final = "gcxform.found"
 ALL_AT_ONCE: Final = "gcxform check, with the same words, says all that is missing at once, as TOML"
 
 _HEAD = re.compile(r"\b(error|warning|note)\[(GX\d+)\]:")
+_VARIES = re.compile(r"\b[A-Z]\b|(?<![A-Za-z#.\d])[-+]?\d[\d.]*")
+"""What differs between findings of one cause: an axis or a word, and numbers, not codes."""
 _COLOUR = {"error": "31;1", "warning": "33;1", "note": "36;1"}
 
 
@@ -105,7 +107,7 @@ def told(error: Exception, meta: Mapping[str, Any]) -> int:
         return _misspelt(error, found)
     if isinstance(error, GcxformError):
         if found is None:
-            say(paint(render_all(_typed(error.diagnostics, meta)), sys.stderr))
+            say(paint(render_all(_typed(said_once(error.diagnostics), meta)), sys.stderr))
         else:
             found += error.diagnostics
         return error.exit_code
@@ -170,6 +172,26 @@ def _typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[D
     if file or FOUND in meta or (os.environ.get(ENVIRONMENT) and not chain):
         return list(diagnostics)
     return [replace(each, hint=said_to_chain(each.hint)) for each in diagnostics]
+
+
+def said_once(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
+    """Return each cause once, with the other lines that have it.
+
+    That are findings of one code whose sentences differ in axes, words and numbers alone.
+    """
+    first: dict[tuple[object, ...], Diagnostic] = {}
+    lines: dict[tuple[object, ...], dict[int, Location]] = {}
+    for each in diagnostics:
+        file = each.where.file if each.where is not None else ""
+        key = each.code, file, each.severity, _VARIES.sub("", each.message)
+        shown = first.setdefault(key, each)
+        if each.where is not None and shown.where is not None:
+            others = [place for place in (each.where, *each.also) if place.line != shown.where.line]
+            lines.setdefault(key, {}).update((place.line, place) for place in others)
+    return [
+        replace(each, also=tuple(place for _, place in sorted(lines.get(key, {}).items())))
+        for key, each in first.items()
+    ]
 
 
 def paint(text: str, stream: TextIO) -> str:
