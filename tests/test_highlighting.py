@@ -22,7 +22,10 @@ from gcxform.testing.cases import read_case
 ROOT = Path(__file__).parents[1]
 DIALECTS = default_registry().dialects
 Match = Callable[[str, int], tuple[int, int] | None]
-OF_GRAMMARS = {id(grammar_of(dialect)): name for name, dialect in DIALECTS.items()}.values()
+OF_GRAMMARS = {
+    dialect.grammar if dialect.translator is None else dialect.translator.grammar: name
+    for name, dialect in DIALECTS.items()
+}.values()
 """A dialect for each grammar: by it alone lines are split."""
 
 
