@@ -73,14 +73,15 @@ ARITHMETIC = replace(
     v.with_logic(v.MACRO_B, bits=True),
     machine=replace(
         OWN,
-        outputs=(*OWN.outputs, range(10100, 11000)),
+        outputs=(*OWN.outputs, range(10000, 11000)),
         lengths=OWN.lengths[:4],
         aliases=((range(10100, 11000), 10_000),),
         signals=(*OWN.signals, range(1601, 2001)),
     ),
 )
-"""#10100 is another name of #100 (NGC); whether #10001 is one of #1 is open, so it cannot be set;
-#1601 and above: flutes and the like of tools."""
+"""#10100 is another name of #100 (NGC). Tables of its variables list #10000 to #10149 as general
+ones, and no other name of #1 to #33: #10000 to #10099 may be set, and are not read. #1601 and
+above: flutes and the like of tools."""
 PATTERNS = ("G70", "G71", "G72", "G150")
 FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
 
