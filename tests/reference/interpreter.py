@@ -278,7 +278,7 @@ class _Machine:
         _, axes, letters = PLANES[self.modal["plane"] or 170]
         steps = self.modal["distance"] == 910  # an arc by distances may begin nowhere known
         known = steps or {axes[0], axes[1]} <= set(start)
-        if not known or axes[2] in set(end) - set(start):
+        if not known or set(end) - set(start):
             raise self._refused("arc from an unknown position")
         first: Point = (start.get(axes[0], 0.0), start.get(axes[1], 0.0))
         ways = [self._length(values[a]) if a in values else 0.0 for a in axes[:2]]
