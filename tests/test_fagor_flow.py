@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from gcxform_plugins.passes.absolute import Absolute
+from gcxform_plugins.passes.segment import Segment
 
 import gcxform as gx
 from gcxform.modal.state import Reading
@@ -156,13 +157,15 @@ def test_it_is_written_back_with_positions_for_steps():
     "lines",
     [
         ("X5I", "$GOTO NP9", "X1"),
-        ("P2=0", "$WHILE P2 < 5", "X5I", "P2=V.A.Y", "$ENDWHILE"),
+        ("P2=0", "$WHILE P2 < 5", "X5I", "P2=V.A.Y", "$ENDWHILE", "X1", "X2I"),
         ("N5 X5I", "$IF V.A.X > 3", "$GOTO N5", "$ENDIF"),
     ],
 )
 def test_a_line_that_may_be_executed_again_is_not_changed(lines):
     text = HEAD + "\n".join(lines) + "\nM30\n"
     assert written(text)[0] == text
+    with pytest.raises(gx.InputError, match="GX501"):
+        written(text.replace("X5I", "G1 X5I"), Segment(max_length=1.0, chord_error=0.1))
 
 
 def test_cycles_and_compensation_keep_the_moves_behind_them():

@@ -65,6 +65,16 @@ def check(text):
     assert waits == pytest.approx(there.seconds), text
 
 
+def test_a_frame_turns_about_x_before_y_and_z():
+    """Programming manual, ROT: angles of one block are RPY, Z first as the axes are turned."""
+    text = b"G710 G90 G17 G94\nROT X90 Z90\nG1 X0 Y0 Z1 F100\nROT X30 Y20\nX0 Y0 Z1\nM30\n"
+    ends = gx.read(text, "siemens", start={"X": 0.0, "Y": 0.0, "Z": 0.0}).path.end
+    assert ends[0] == pytest.approx([1, 0, 0], abs=NEAR)
+    x, y = math.radians(30), math.radians(20)
+    turned = [math.cos(x) * math.sin(y), -math.sin(x), math.cos(x) * math.cos(y)]
+    assert ends[1] == pytest.approx(turned, abs=NEAR)
+
+
 # --- random programs ---
 
 

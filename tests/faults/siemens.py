@@ -421,7 +421,7 @@ MUTATIONS = (
         FRAMES,
         'about("Z", z) @ about("Y", y) @ about("X", x)',
         'about("X", x) @ about("Y", y) @ about("Z", z)',
-        FLOW,
+        "tests/test_siemens.py::test_a_frame_turns_about_x_before_y_and_z",
     ),
     Mutation(
         "siemens: what is added to a frame acts outside of it",
