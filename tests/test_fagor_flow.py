@@ -157,7 +157,7 @@ def test_it_is_written_back_with_positions_for_steps():
     "lines",
     [
         ("X5I", "$GOTO NP9", "X1"),
-        ("P2=0", "$WHILE P2 < 5", "X5I", "P2=V.A.Y", "$ENDWHILE", "X1", "X2I"),
+        ("P2=0", "$WHILE P2 < 5", "X5I", "P2=V.A.Y", "$ENDWHILE"),
         ("N5 X5I", "$IF V.A.X > 3", "$GOTO N5", "$ENDIF"),
     ],
 )
@@ -166,6 +166,13 @@ def test_a_line_that_may_be_executed_again_is_not_changed(lines):
     assert written(text)[0] == text
     with pytest.raises(gx.InputError, match="GX501"):
         written(text.replace("X5I", "G1 X5I"), Segment(max_length=1.0, chord_error=0.1))
+
+
+def test_behind_a_loop_that_was_executed_before_nothing_is_changed():
+    lines = ["P2=0", "$WHILE P2 < 5", "P2=V.A.Y", "$ENDWHILE", "G90 G0 X1", "X2I"]
+    text = HEAD + "\n".join([*lines, "M30"]) + "\n"
+    assert written(text)[0] == text
+    assert "X3" in written(text.replace("P2=V.A.Y", "P2=7"))[0]
 
 
 def test_cycles_and_compensation_keep_the_moves_behind_them():
