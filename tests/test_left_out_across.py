@@ -2,30 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import across_kit
 import pytest
 
-import gcxform as gx
 from gcxform.modal.state import Reading
-from gcxform.plugin.registry import default_registry
 
-DIALECTS = default_registry().dialects
 HOMES = {"G28": {"X": 10.0, "Y": 20.0, "Z": 450.0}}
 OFFSETS = {"G54": {"X": 1.0, "Y": 2.0, "Z": 100.0}}
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0}, homes=HOMES, work_offsets=OFFSETS)
-HEAD = "G21 G90 G94 G17 G54\n"
-
-
-def said(source, target, blocks, **options):
-    pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), START, **options)
-    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
-    assert result.certificate.verified
-    return result.text.decode().split("\n")[1:-2]
-
-
-def refused(source, target, blocks, **options):
-    with pytest.raises(gx.GcxformError) as error:
-        said(source, target, blocks, **options)
-    return error.value.diagnostics[0]
+said, refused = partial(across_kit.said, START), partial(across_kit.refused, START)
 
 
 OPTIONS = [

@@ -2,30 +2,19 @@
 
 from __future__ import annotations
 
+from functools import partial
+
+import across_kit
 import pytest
 
 import gcxform as gx
 from gcxform.machine.machine import Tool
 from gcxform.modal.state import Reading
-from gcxform.plugin.registry import default_registry
 
-DIALECTS = default_registry().dialects
+DIALECTS = across_kit.DIALECTS
 TOOLS = {1: Tool(length=50.0, radius=3.0), 2: Tool(length=25.4)}
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0}, tools=TOOLS)
-HEAD = "G21 G90 G94 G17 G54\n"
-
-
-def said(source, target, blocks, **options):
-    pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), START, **options)
-    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
-    assert result.certificate.verified
-    return result.text.decode().split("\n")[1:-2]
-
-
-def refused(source, target, blocks, **options):
-    with pytest.raises(gx.GcxformError) as error:
-        said(source, target, blocks, **options)
-    return error.value.diagnostics[0]
+said, refused = partial(across_kit.said, START), partial(across_kit.refused, START)
 
 
 LENGTHS = [
@@ -63,7 +52,7 @@ def test_what_is_inert_on_one_machine_is_not_said_of_another():
     codes = {"M59": "M60"}
     pipeline = gx.Pipeline(DIALECTS["haas"], DIALECTS["fanuc"], (), reading, m_codes=codes)
     with pytest.raises(gx.GcxformError) as error:
-        pipeline.run(f"{HEAD}G0 X1. Y2. Z5.\nM59\nG0 X5.\nM30\n".encode())
+        pipeline.run(f"{across_kit.HEAD}G0 X1. Y2. Z5.\nM59\nG0 X5.\nM30\n".encode())
     assert error.value.diagnostics[0].code == "GX509"
 
 

@@ -19,16 +19,8 @@ from gcxform_plugins.dialects.fagor.lines import Lines
 from gcxform_plugins.dialects.fagor.places import code_of
 from gcxform_plugins.dialects.fagor.spelling import HEAD, counts, spelled
 from gcxform_plugins.dialects.fagor.structure import StructureError, code
+from gcxform_plugins.dialects.shared.keeping import KEEPABLE, KEEPS, KEPT
 
-KEPT = "M9000"
-KEEPABLE = frozenset(
-    ("GX203", "GX204", "GX206", "GX207", "GX208", "GX210", "GX213", "GX215", "GX220", "GX221")
-)
-"""The refusals of what may stand as it is: it is not known, or not read."""
-KEEPS = (
-    "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
-    "units, plane and feed mode are taken to be as before"
-)
 HANGS = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:8|36|37|38|39)(?![0-9.])", re.IGNORECASE)
 """Codes that take the direction of the move before them, or change the moves beside them."""
 BEHIND = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:36|37|38|39)(?![0-9.])", re.IGNORECASE)

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 from gcxform_plugins.dialects.fagor.structure import code
-from gcxform_plugins.dialects.shared.words import COMMENT, WORD
+from gcxform_plugins.dialects.shared.words import COMMENT, WORD, number
 
 AXES = "XYZABCUVW"
 NUMBER = r"[-+]?[ \t]*(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
@@ -49,7 +49,7 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     said = [m["axis"].upper() for m in AXIS.finditer(text)]
     if len(set(said)) != len(said) or not set(values) <= set(said) or (said and not values):
         return None
-    centre = " ".join(f"{letter}{_number(value)}" for letter, value in words if letter in "IJK")
+    centre = " ".join(f"{letter}{number(value)}" for letter, value in words if letter in "IJK")
     text = AXIS.sub(lambda m: _axis(m, values), text)
     if centre:
         text = RADIUS.sub(centre, text)
@@ -61,10 +61,6 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     return text + behind
 
 
-def _number(text: str) -> str:
-    return format(Decimal(text).normalize(), "f")
-
-
 def _axis(found: re.Match[str], values: dict[str, str]) -> str:
     """Return an axis word with its new value; one that does not move any more is left out."""
     axis = found["axis"]
@@ -73,4 +69,4 @@ def _axis(found: re.Match[str], values: dict[str, str]) -> str:
     new, old = Decimal(values[axis.upper()]), found["value"].replace(" ", "").replace("\t", "")
     if not found["step"] and re.fullmatch(NUMBER, old) and Decimal(old) == new:
         return found[0]
-    return f"{axis}{found['blank']}{_number(values[axis.upper()])}"
+    return f"{axis}{found['blank']}{number(values[axis.upper()])}"

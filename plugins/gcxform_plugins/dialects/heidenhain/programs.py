@@ -15,16 +15,8 @@ import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
+from gcxform_plugins.dialects.shared.keeping import KEEPABLE, KEEPS, KEPT
 
-KEPT = "M9000"
-KEEPABLE = frozenset(
-    ("GX203", "GX204", "GX206", "GX207", "GX208", "GX210", "GX213", "GX215", "GX220", "GX221")
-)
-"""The refusals of what may stand as it is: it is not known, or not read."""
-KEEPS = (
-    "as they stand: {}; where the axes are behind them is not known, nor what they have set; "
-    "units, plane and feed mode are taken to be as before"
-)
 ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
 """Lines that hang on the direction of the move before them."""
 DECIDES = re.compile(r"FN\s*(?:9|10|11|12)\s*:|CALL\s+LBL", re.IGNORECASE)

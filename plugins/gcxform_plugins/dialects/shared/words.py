@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 
 COMMENT = re.compile(r"\([^()]*\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
+
+
+def number(text: str) -> str:
+    """Return a number as it is written by hand: without zeros in front or behind."""
+    return format(Decimal(text).normalize(), "f")

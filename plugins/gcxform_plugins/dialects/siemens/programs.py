@@ -16,6 +16,7 @@ from lark.exceptions import UnexpectedInput
 
 import gcxform as gx
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.shared.keeping import KEPT
 from gcxform_plugins.dialects.siemens.calls import Calls
 from gcxform_plugins.dialects.siemens.effects import effect_of
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
@@ -26,7 +27,6 @@ from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.standing import ALL, DRILLING, OTHER, PATHS, axes_of, words_of
 from gcxform_plugins.dialects.siemens.structure import code
 
-KEPT = "M9000"
 DECIDES = re.compile(
     r"(?:IF|ELSE|ENDIF|LOOP|ENDLOOP|FOR|ENDFOR|WHILE|ENDWHILE|REPEATB?|UNTIL|CASE|GOTO[BFCS]?|RET)"
     r"(?![A-Z0-9_])"

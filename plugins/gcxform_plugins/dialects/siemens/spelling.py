@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from decimal import Decimal
 
-from gcxform_plugins.dialects.shared.words import COMMENT, WORD
+from gcxform_plugins.dialects.shared.words import COMMENT, WORD, number
 
 CODE = re.compile(r'((?:[^";]|"[^"]*")*)(.*)', re.DOTALL)
 AXES = "XYZABC"
@@ -42,7 +41,7 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     if len(set(said)) != len(said) or not set(values) <= {*said, *ways} or (said and not values):
         return None
     text = AXIS.sub(lambda m: _axis(m, values), text)
-    centre = " ".join(f"{letter}{_number(value)}" for letter, value in words if letter in "IJK")
+    centre = " ".join(f"{letter}{number(value)}" for letter, value in words if letter in "IJK")
     if centre:
         text = RADIUS.sub(centre, text)
     if ("G", "90") in words:
@@ -54,16 +53,12 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     return text + comment
 
 
-def _number(text: str) -> str:
-    return format(Decimal(text).normalize(), "f")
-
-
 def _axis(found: re.Match[str], values: dict[str, str]) -> str:
     """Return an axis word with its new value; one that does not move any more is left out."""
     axis = found["axis"]
     if axis.upper() not in values:
         return ""
-    number = _number(values[axis.upper()])
+    value = number(values[axis.upper()])
     if found["equals"] is not None:
-        return f"{axis}{found['equals']}{number}"
-    return f"{axis}{found['blank']}{number}"
+        return f"{axis}{found['equals']}{value}"
+    return f"{axis}{found['blank']}{value}"

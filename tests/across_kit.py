@@ -1,0 +1,26 @@
+"""Blocks of one control as they are said for another, by a reading that each test file has."""
+
+from __future__ import annotations
+
+import pytest
+
+import gcxform as gx
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+HEAD = "G21 G90 G94 G17 G54\n"
+
+
+def said(reading, source, target, blocks, **options):
+    """Return the lines that blocks become, proved, without those of the head and of the end."""
+    pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), reading, **options)
+    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
+    assert result.certificate.verified
+    return result.text.decode().split("\n")[1:-2]
+
+
+def refused(reading, source, target, blocks, **options):
+    """Return what is said against blocks."""
+    with pytest.raises(gx.GcxformError) as error:
+        said(reading, source, target, blocks, **options)
+    return error.value.diagnostics[0]
