@@ -8,7 +8,14 @@ from gcxform.catalogue.offers import either, put_before
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import UsageError
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.facts import AT_READING, AXIS_POSITIONS, COMPENSATED, TIP_POSITIONS, Fact
+from gcxform.toolpath.facts import (
+    AT_READING,
+    AXIS_POSITIONS,
+    COMPENSATED,
+    NO_CYCLES,
+    TIP_POSITIONS,
+    Fact,
+)
 
 
 def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
@@ -34,6 +41,16 @@ def compensates(passes: Sequence[Pass]) -> bool:
     before, after = facts_at_reading(passes), facts_after(passes)
     moved = {TIP_POSITIONS, AXIS_POSITIONS}
     return before & moved == after & moved and (COMPENSATED in before) != (COMPENSATED in after)
+
+
+def compensates_cycles(passes: Sequence[Pass]) -> bool:
+    """Return whether cycles are written as moves, since the error is another one at each."""
+    return compensates(passes) and not any(step.demands.resolves for step in passes)
+
+
+def expands_cycles(passes: Sequence[Pass]) -> bool:
+    """Return whether all canned cycles become plain moves: by a pass, or to be compensated."""
+    return compensates_cycles(passes) or any(NO_CYCLES in step.ensures for step in passes)
 
 
 def check_chain(passes: Sequence[Pass]) -> None:

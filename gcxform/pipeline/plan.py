@@ -42,7 +42,7 @@ from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
-from gcxform.pipeline.chain import check_chain, compensates, facts_after
+from gcxform.pipeline.chain import check_chain, compensates, expands_cycles, facts_after
 from gcxform.pipeline.reasons import Told
 from gcxform.plugin.registry import dialect_of
 from gcxform.stamps.chain import Marks, against, refusal, stamp_of
@@ -50,7 +50,7 @@ from gcxform.stamps.comment import stamps_in
 from gcxform.stamps.writing import comment_line
 from gcxform.syntax.source import Source
 from gcxform.system.limits import Limits
-from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, METRIC, NO_CYCLES, WORKPIECE_FRAME
+from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, METRIC, WORKPIECE_FRAME
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
@@ -235,14 +235,13 @@ class Plan:
     def manner(self) -> Manner:
         """How the program is written."""
         numbers = self.numbers or self.target.numbers
-        expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
         manner = Manner(
             self.source,
             self.target,
             numbers,
             self.words,
             self.decimals,
-            expands,
+            expands_cycles(self.path_passes),
             said=self.saying,
             foreign_cycles=foreign_cycles(self.source, self.target),
         )
@@ -275,8 +274,7 @@ class Plan:
     def machine_reading(self) -> Reading:
         """What is known of programs before they are read, with what the machine file says."""
         reading = self.reading if self.machine is None else self.reading.on(self.machine)
-        expands = any(NO_CYCLES in step.ensures for step in self.path_passes)
-        same = self.source is self.target
+        expands, same = expands_cycles(self.path_passes), self.source is self.target
         folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
         open_pecks, tables_stay = same and not expands, same and not folds
         counts = not same or expands or folds or not says_the_same(self.path_passes)

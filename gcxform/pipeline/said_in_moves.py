@@ -1,7 +1,8 @@
 """Moves that the control of the output makes by other words, without being asked.
 
 Canned cycles that it has not become their moves, and ways home to another kind of point become
-moves in the machine, where it is known where home is.
+moves in the machine, where it is known where home is. A compensation finds the moves of all cycles:
+the errors of a machine on the way down a hole are others than where it begins.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from gcxform.modal.interpreter import Interpreted
+from gcxform.pipeline.chain import compensates_cycles
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.syntax.scan import Window
@@ -25,10 +27,12 @@ def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> T
     """
     path, foreign = _homed(plan, read), plan.manner.foreign_cycles
     resolves = any(step.demands.resolves for step in plan.path_passes)
-    if resolves or not foreign or not (path.form == Form.CYCLE).any():
+    whole = compensates_cycles(plan.path_passes)
+    if resolves or not (foreign or whole) or not (path.form == Form.CYCLE).any():
         return path
     with placing(window, file):
-        return cycles_as_moves(path, np.isin(read.modes.cycle[path.block], list(foreign)))
+        here = np.isin(read.modes.cycle[path.block], list(foreign))
+        return cycles_as_moves(path, None if whole else here)
 
 
 def _homed(plan: Plan, read: Interpreted) -> Toolpath:

@@ -130,6 +130,13 @@ FAULTS = (
         f"{CASE}[flow/control-values-set]",
     ),
     (
+        "a cycle under compensation is written as one that is still called",
+        "gcxform/pipeline/chain.py",
+        "return compensates_cycles(passes) or any(",
+        "return any(",
+        f"{CASE}[volumetric/cycle]",
+    ),
+    (
         "another name of a parameter is another parameter",
         "gcxform/dialect/arithmetic.py",
         "return next(filter(self.owns, own), key)",

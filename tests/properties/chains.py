@@ -313,7 +313,7 @@ def compare(job: Job, old: Answer, new: Answer) -> None:
     if not isinstance(new, CanonProgram):
         job.kind, job.said = "disagrees", f"LinuxCNC refuses it: {new}"
         return
-    if "cycles" in job.chain.text:  # in a cycle the control stops exactly at every end
+    if "cycles" in job.chain.text or job.chain.errors:  # a cycle stops exactly at every end
         old, new = (
             replace(run, told=[t for t in run.told if not t[1].startswith(PATH_MODES)])
             for run in (old, new)

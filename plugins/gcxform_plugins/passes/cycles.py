@@ -16,7 +16,8 @@ class ExpandCycles(gx.Pass):
     for its feed is tied to the spindle only as long as it is a cycle; so do cycles that orient the
     spindle, and the cycles between which and one of these there is no other move.
 
-    Where a program is written for a control that has not the same cycle that is done by itself.
+    Where a program is written for a control that has not the same cycle, and where the errors of a
+    machine are taken off, that is done by itself.
 
     LinuxCNC ends the moves of a cycle exactly, also under G64: where that is stated they get G61
     before them, and G64 with its words behind them; where no path mode is stated they are written
