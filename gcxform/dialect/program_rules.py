@@ -14,6 +14,7 @@ class ProgramRule:
     """Where programs begin and end, and which of their blocks are executed.
 
     has_percent        a percent sign may stand around a program
+    has_title          what stands behind it in its line is not read; otherwise it is refused
     drops_percent      where it may not: a line of one does nothing, wherever it stands
     has_program_number an O number may stand at its head
     number_digits      how many digits such a number may have; 0: any number
@@ -25,6 +26,7 @@ class ProgramRule:
     """
 
     has_percent: bool = True
+    has_title: bool = False
     drops_percent: bool = False
     has_program_number: bool = True
     number_digits: int = 0

@@ -117,6 +117,8 @@ def is_foreign(item: Item, source: type[Dialect], target: type[Dialect]) -> bool
         return item.kind == "assignment" and not lasts_in(item, source, target)
     if not isinstance(item, Mark):
         return False
+    if item.kind == "title":
+        return source is not target
     if item.kind == "block_end":  # the line end says it everywhere
         return True
     if item.kind == "percent":

@@ -43,7 +43,7 @@ MUTATIONS = (
     ),
     Mutation(
         "reading: a percent sign beside words is dropped",
-        "gcxform/modal/meaning/sorting.py",
+        "gcxform/modal/meaning/percent.py",
         "return alone and dialect.program_rule.drops_percent",
         "return dialect.program_rule.drops_percent",
         CORPUS,
@@ -181,5 +181,26 @@ MUTATIONS = (
         "contour = code in CONTOURS",
         "contour = code in TURNING",
         "tests/test_corpus.py::test_case[dialects/fanuc/cycle-with-p-and-q]",
+    ),
+    Mutation(
+        "reading: words behind a percent sign act",
+        "gcxform/modal/meaning/percent.py",
+        "if reads and other.start > item.start:",
+        "if reads and other.start < item.start:",
+        "tests/test_corpus.py::test_case[dialects/haas/percent-with-words]",
+    ),
+    Mutation(
+        "reading: another control reads no title either",
+        "plugins/gcxform_plugins/dialects/haas.py",
+        "has_title=False",
+        "has_title=True",
+        "tests/test_corpus.py::test_case[dialects/haas/percent-with-words]",
+    ),
+    Mutation(
+        "writing: a title goes to another control",
+        "gcxform/emit/expressible.py",
+        'if item.kind == "title":',
+        'if item.kind == "titled":',
+        "tests/test_corpus.py::test_case[dialects/fanuc/title-for-linuxcnc]",
     ),
 )

@@ -29,6 +29,7 @@ from gcxform.modal.meaning.numbered import (
     spindle_number,
     table_acts,
 )
+from gcxform.modal.meaning.percent import behind_percent, is_dropped
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
 from gcxform.modal.meaning.too_many import too_many
 from gcxform.syntax.shapes import Shape
@@ -98,18 +99,14 @@ def _mark(item: Mark, shape: Shape, dialect: type[Dialect], meaning: Meaning) ->
     """Look at a sign of the frame of a program, or at what is sent out."""
     meaning.marked = True
     meaning.deleted |= item.kind == "block_delete"
-    meaning.percent |= item.kind == "percent" and not _dropped(shape, dialect)
+    meaning.percent |= item.kind == "percent" and not is_dropped(shape, dialect)
+    if item.kind == "percent" and dialect.program_rule.has_percent:
+        yield from behind_percent(item, shape, dialect)
     if item.kind == "program_name" and not _stands_alone(item, shape):
         size = item.end - item.start
         yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
     if is_output(item):
         yield from read_output(item, shape.block, dialect, meaning)
-
-
-def _dropped(shape: Shape, dialect: type[Dialect]) -> bool:
-    """Whether a percent sign does nothing, because it stands in a line of its own."""
-    alone = all(isinstance(item, Mark | Comment) for item in shape.block.items)
-    return alone and dialect.program_rule.drops_percent
 
 
 def _comment(

@@ -4,6 +4,7 @@
 |---|---|
 | a distance without a point | parameters 1013 and 3401#0 decide: `[input] increment` |
 | `;` at the end of a line | is the end of the block, which the line end says as well |
+| text behind % in its line | is a title, not read (B-64014EN p. 21, B-63524EN p. 649) |
 | motion at start | parameter 3402: taken as unknown, so the first move needs its code |
 | units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
 | two codes of a group | the last is taken |
@@ -191,6 +192,7 @@ class Fanuc(gx.Dialect):
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
+    program_rule = gx.ProgramRule(has_title=True)
     text_rule = gx.TextRule(lower_case=False)
     block_rule = gx.BlockRule(
         last_code_wins=True,

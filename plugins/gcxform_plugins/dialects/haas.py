@@ -129,7 +129,7 @@ class Haas(Fanuc):
     }
     chosen: ClassVar[Mapping[str, str]] = {"M16": "M16 is M6"}
     settings = (gx.Setting("cycle-without-place", "haas: Setting 28", ("drills",)),)
-    program_rule = replace(Fanuc.program_rule, number_digits=5)
+    program_rule = replace(Fanuc.program_rule, has_title=False, number_digits=5)
     text_rule = replace(Fanuc.text_rule, lower_case=True, line_length=256)
     block_rule = replace(Fanuc.block_rule, words=Fanuc.block_rule.words + "UVW")
     flow_rule = replace(

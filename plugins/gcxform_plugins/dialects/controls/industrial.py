@@ -39,12 +39,15 @@ GONE = ("G4", "G49", *(f"G{n}" for n in range(54, 60)))
 HURCO_GONE = ("G54.1", "G54.2", "G54.4", "G5", "G5.1", "G8")
 SPACE = "it cuts an arc in space"
 
+UNTITLED = replace(Fanuc.program_rule, has_title=False)
+
 
 class Mazak(Fanuc):
     """Mazak EIA/ISO (Matrix, Smooth), as posts write for it."""
 
     name = "mazak"
     kin = "fanuc"
+    program_rule = UNTITLED
     point_rule = replace(Fanuc.point_rule, dwell={"X": 1.0, "P": 0.001})
 
 
@@ -71,6 +74,7 @@ class Brother(Fanuc):
 
     name = "brother"
     kin = "fanuc"
+    program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **Fanuc.codes,
         "G100": v.barrier("non-modal", CHANGE, "THSD"),
@@ -92,6 +96,7 @@ class Hurco(Fanuc):
 
     name = "hurco"
     kin = "fanuc"
+    program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in HURCO_GONE},
         **{
