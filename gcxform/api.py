@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -30,6 +30,7 @@ from gcxform.system.files import write_atomically
 from gcxform.toolpath.columns import COLUMNS
 from gcxform.toolpath.drawn import strokes
 from gcxform.toolpath.path import BLOCK_MODES, Toolpath
+from gcxform.values import dataclass
 
 SHOWN = 400  # characters of a program that a notebook shows
 

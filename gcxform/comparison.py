@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import zip_longest
 
 import numpy as np
@@ -30,6 +30,7 @@ from gcxform.toolpath.path import (
     Toolpath,
 )
 from gcxform.toolpath.splines import straightened
+from gcxform.values import dataclass
 
 STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
 TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do

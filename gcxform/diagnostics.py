@@ -8,9 +8,11 @@ which exit code the command line returns; nothing below the command line prints 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from enum import IntEnum
 from typing import ClassVar, Self
+
+from gcxform.values import dataclass
 
 PRINTED_AT_MOST = 20
 PLACES_SHOWN = 5  # of the other lines on which a finding holds as well

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Set
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import islice
 from pathlib import Path
 
@@ -26,6 +26,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Comment, Number, Word
+from gcxform.values import dataclass
 
 FOREIGN = frozenset({"GX101", "GX201", "GX202", "GX203"})  # blocks the control itself refuses
 WINDOWS = 2  # of the program that are looked at

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -29,6 +28,7 @@ from gcxform.config.toml_text import did_you_mean
 from gcxform.diagnostics import Diagnostic, FileError, InputError, Location
 from gcxform.system import inputs
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 LENGTHS: Final[Mapping[str, float]] = {
     "mm": 1.0,

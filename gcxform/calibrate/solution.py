@@ -7,12 +7,12 @@ basis of the directions along which nothing changes any observation.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 FEW: Final = 8  # one in so many may be an outlier
 CAUCHY: Final = 2.385  # half of the weight is lost here; 95 % efficient on one normal variable

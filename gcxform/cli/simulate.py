@@ -6,7 +6,7 @@ import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, TypeVar
 
 import click
@@ -38,6 +38,7 @@ from gcxform.simulate.virtual import (
     ranges,
 )
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 SHARE = 0.4  # of the shortest travel: the radius if none is given

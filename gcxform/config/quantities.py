@@ -9,8 +9,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import Decimal
+
+from gcxform.values import dataclass
 
 LINEAR_AXES = tuple("XYZUVW")
 ROTARY_AXES = tuple("ABC")

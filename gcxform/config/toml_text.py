@@ -12,7 +12,6 @@ import re
 import tomllib
 import typing
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -23,6 +22,7 @@ from gcxform.catalogue.offers import write_instead
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system import inputs
 from gcxform.system.inputs import UTF16, UTF16_MARKS
+from gcxform.values import dataclass
 
 Keys = tuple[str | int, ...]
 Config = TypeVar("Config", bound=msgspec.Struct)

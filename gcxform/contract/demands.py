@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from gcxform.system.arrays import Flags
 from gcxform.toolpath.path import FeedMode, Toolpath
+from gcxform.values import dataclass
 
 if TYPE_CHECKING:
     from gcxform.contract.option_kinds import KinematicsFile

@@ -10,7 +10,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -39,6 +39,7 @@ from gcxform.machine.file import load_machine
 from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import Machine
 from gcxform.system import inputs
+from gcxform.values import dataclass
 
 Read = TypeVar("Read")
 

@@ -20,7 +20,7 @@ import re
 import types
 import typing
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import MISSING, dataclass
+from dataclasses import MISSING
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, TypeVar
@@ -56,6 +56,7 @@ from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import NONE, Known
 from gcxform.system.option_mark import Option as Option
+from gcxform.values import dataclass
 
 Built = TypeVar("Built")
 Where = Callable[[str], Location]

@@ -18,7 +18,7 @@ What a pass promises is called `promise`, because `tolerance` is the name that o
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, ClassVar
 
 from gcxform.contract.demands import Demands
@@ -29,6 +29,7 @@ from gcxform.dialect.saying import Saying
 from gcxform.syntax.tree import Block
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 if TYPE_CHECKING:
     from gcxform.machine.machine import Machine

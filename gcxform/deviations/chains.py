@@ -10,8 +10,6 @@ nearest points only makes it larger.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.deviations.deviation import deviation
@@ -20,6 +18,7 @@ from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.columns import constant
 from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.values import dataclass
 
 ROOM = 20_000  # rows compared at once
 STEPS = 60  # how far, in rows, a joint is looked for from where lengths say it is

@@ -9,8 +9,6 @@ same plane; splines are in `gcxform/deviations/splines.py`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.deviations.spirals import Spirals, spirals_apart
@@ -19,6 +17,7 @@ from gcxform.dialect.dialect import LINEAR
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN, swept
 from gcxform.toolpath.path import Form, Kind, Plane, Toolpath
+from gcxform.values import dataclass
 
 ROUND = 1e-9  # mm; by so much the radius of a circle may change
 SAME_SWEEP = 1e-9  # rad

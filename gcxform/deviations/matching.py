@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from gcxform.system.arrays import Floats, Ints
 from gcxform.system.stages import stage
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Kind, Plane, Toolpath
+from gcxform.values import dataclass
 
 Point = Sequence[float]
 Apart = Callable[[Point, Point], float]

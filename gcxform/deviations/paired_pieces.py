@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.deviations.deviation import deviation
@@ -11,6 +9,7 @@ from gcxform.deviations.even_travel import evenly_apart
 from gcxform.deviations.matching import Matching, cut
 from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.path import Kind, Toolpath
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

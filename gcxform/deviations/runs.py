@@ -9,8 +9,6 @@ at here, and the path along it is compared in both directions and in the order o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.deviations.chains import ROOM, Chain, along_chains
@@ -20,6 +18,7 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
 from gcxform.toolpath.splines import spline_chords, splines_as_lines
+from gcxform.values import dataclass
 
 SAME_FEED = 2e-4  # relative; what the rounding of a feed may change
 STILL = 1e-9  # mm, deg

@@ -11,11 +11,11 @@ are farther apart, points at the same part of both are paired.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.values import dataclass
 
 FEW, PARTS = 16, 128  # at which spirals are compared
 NEAR = 2e-5  # mm; what may be between a few parts

@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
 from gcxform.dialect.machine_parameters import FANUC, MachineParameters, NamedParameters, among
+from gcxform.values import dataclass
 
 PI = np.longdouble("3.14159265358979323846264338327950288")
 NEAR = 1e-9  # of a number: so far may another control's arithmetic be off

@@ -7,8 +7,9 @@ all the first-party dialects agree, and each dialect adds to it or takes away.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum
+
+from gcxform.values import dataclass
 
 
 class Effect(Enum):

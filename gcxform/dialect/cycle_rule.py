@@ -9,8 +9,9 @@ each dialect has a `CycleRule` of its own, or that of its relative with changes 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import IntEnum
+
+from gcxform.values import dataclass
 
 DWELL = "DWELL"
 STOP = "M5"

@@ -18,7 +18,7 @@ Everything is data; the reader, the emitter and the verifier ask here and nowher
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import is_dataclass
 from typing import ClassVar
 
 from gcxform.config import arguments
@@ -31,6 +31,7 @@ from gcxform.dialect.move_rules import ArcRule, FeedRule, MotionRule
 from gcxform.dialect.program_rules import BlockRule, FlowRule, ProgramRule, TextRule
 from gcxform.machine.control import Setting, declare
 from gcxform.syntax.grammar import Grammar, load
+from gcxform.values import dataclass
 
 MOST_DECIMALS = 15  # what a double holds
 INCH = 25.4  # mm, exact by definition

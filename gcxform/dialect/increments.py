@@ -18,10 +18,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from gcxform.config.quantities import ANGLE, LENGTH, ROTARY_AXES
+from gcxform.values import dataclass
 
 INCH: Final = float(LENGTH.worth["in"])  # mm
 SYSTEMS: Final = ("IS-A", "IS-B", "IS-C", "IS-D", "IS-E")

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform.dialect.arithmetic import Arithmetic
 from gcxform.dialect.codes import MCode
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,11 +22,12 @@ What is left out of events is what the proof does not look for, so a rule here i
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform import diagnostics
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import Dialect
+from gcxform.values import dataclass
 
 EXACT_STOP, EXACT_PATH, BLEND = "exact-stop", "exact-path", "blend"
 LOOK_AHEAD, RPM, CANCEL = "look-ahead", "rpm", "cancel"

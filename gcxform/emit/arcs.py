@@ -7,14 +7,13 @@ tried: of those that the control takes, the one that moves the arc least is writ
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.moves.arcs import accepts
 from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.angles import TURN, swept
+from gcxform.values import dataclass
 
 SWEEP_SLIP = np.radians(1.0)  # a sweep that changes by more in formatting is another arc
 STRICT = 0.002  # mm; tighter than any control asks, so that the arc passes elsewhere too

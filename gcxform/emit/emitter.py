@@ -10,7 +10,6 @@ words are taken from are made, and `gcxform/emit/writing.py` makes text of them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -38,6 +37,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment, Item, Word
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
+from gcxform.values import dataclass
 
 LOST = 1e-3  # relative; of the time of a block that pieces without words would take along
 

@@ -17,7 +17,6 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 
@@ -29,6 +28,7 @@ from gcxform.emit.values_left import Values
 from gcxform.flow.walk import Walk, parts_of
 from gcxform.stamps.comment import is_stamp
 from gcxform.syntax.tree import Statement
+from gcxform.values import dataclass
 
 SEQUENCE = re.compile(rb"[ \t]*(?:/[1-9]?)?[ \t]*[Nn][ \t]*0*([0-9]+)")
 RETURNS = re.compile(rb"#[ \t]*<[ \t]*_value", re.IGNORECASE)

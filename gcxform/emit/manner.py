@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import NoReturn
 
@@ -18,6 +18,7 @@ from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 WORDS = ("changed", "programmed", "all")
 

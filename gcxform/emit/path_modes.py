@@ -10,7 +10,6 @@ said the program is refused; where no path mode is stated, nobody knows what to 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from gcxform.emit.manner import Task
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Event
+from gcxform.values import dataclass
 
 EXACT, BLENDING, GROUP = "G61", "G64", "path"
 ENDS_EXACTLY = (

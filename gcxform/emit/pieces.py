@@ -6,7 +6,6 @@ What each of them has to state is settled after that (`gcxform/emit/stated.py`).
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from gcxform.emit.tapping import Taps
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints, Small
 from gcxform.toolpath.path import Event, Form, Given
+from gcxform.values import dataclass
 
 Said = tuple[object, ...]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -18,6 +17,7 @@ import numpy as np
 from gcxform.flow.walk import Walk
 from gcxform.syntax.tree import Statement
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 LINE_END = re.compile(rb"\r\n|\n|\r")
 

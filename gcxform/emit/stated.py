@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +15,7 @@ from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.path import FeedMode, Form, Kind
 from gcxform.toolpath.still_axes import turns_only
+from gcxform.values import dataclass
 
 NOTHING = np.int8(-1)
 

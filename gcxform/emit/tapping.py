@@ -18,7 +18,6 @@ R a little elsewhere it has as many.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import NoReturn
 
 import numpy as np
@@ -32,6 +31,7 @@ from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats
 from gcxform.toolpath.facts import IN_AIR
 from gcxform.toolpath.path import Form, Kind, Plane
+from gcxform.values import dataclass
 
 EXACT = 1e-9  # mm; closer values are the same number
 ROOM = 0.99  # of what the passes promise: undoing them may stretch what is off

@@ -8,7 +8,6 @@ written as a number, or makes a block too long, is refused.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -55,6 +54,7 @@ from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Given, Kind
+from gcxform.values import dataclass
 
 FEED_SLIP = 1.5e-4  # relative; a feed that would be written farther off is refused
 

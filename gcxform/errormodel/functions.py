@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -20,6 +20,7 @@ from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.model import AXES
 from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 COMBINATIONS_AT_MOST = 250_000  # cells (50 ms) for which the Lipschitz constant is computed exactly
 COLUMNS = ("X", "Y", "Z", "A", "B", "C")

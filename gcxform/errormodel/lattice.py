@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -18,6 +17,7 @@ import numpy.typing as npt
 
 from gcxform.errormodel.tabled import Positions, Tabled
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Cell = npt.NDArray[np.intp]
 Field = tuple[list[Floats], Floats]

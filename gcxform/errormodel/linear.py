@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
 from gcxform.errormodel.model import ErrorModel, Outside
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,11 +7,11 @@ the position any more.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from gcxform.errormodel.model import ErrorModel, Outside, State
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, eq=False)

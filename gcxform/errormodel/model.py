@@ -13,7 +13,6 @@ from __future__ import annotations
 import enum
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 import numpy as np
@@ -21,6 +20,7 @@ import numpy as np
 from gcxform.diagnostics import InputError, Location, UsageError
 from gcxform.errormodel.drawn import cell
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 AXES = "XYZ"
 BORDER = 1e-9  # mm: so little outside the table still counts as inside

@@ -7,7 +7,6 @@ machine than this (ISO 230-2).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
@@ -17,6 +16,7 @@ from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.errormodel.functions import AxisFunction, faults
 from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, eq=False)

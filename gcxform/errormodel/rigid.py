@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import ClassVar
 
@@ -26,6 +26,7 @@ from gcxform.errormodel.functions import AxisFunction
 from gcxform.errormodel.model import AXES
 from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Triple = tuple[float, float, float]
 NOWHERE: Triple = (0.0, 0.0, 0.0)

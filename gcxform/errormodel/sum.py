@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import reduce
 from typing import Annotated, ClassVar, Literal
 
@@ -14,6 +13,7 @@ from gcxform.config.toml_text import TomlText
 from gcxform.diagnostics import UsageError
 from gcxform.errormodel.model import ErrorModel, Outside, State
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, eq=False)

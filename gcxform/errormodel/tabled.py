@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from gcxform.errormodel.model import BLOCK, ErrorModel, Outside, part_of
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Positions = tuple[Floats | None, Floats | None, Floats | None]
 

@@ -14,13 +14,14 @@ import bisect
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
 from gcxform.config.toml_text import did_you_mean, read_text
 from gcxform.diagnostics import Diagnostic, Location, UsageError
+from gcxform.values import dataclass
 
 TIME = "time"
 KELVIN = 273.15  # K at 0 degC

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from gcxform.config.toml_text import read_text
 from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.functions import Fault
+from gcxform.values import dataclass
 
 PLACES = 9  # decimals of a written mm: a millionth of a micrometre
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?|[+-]?(?:nan|inf)", re.I)

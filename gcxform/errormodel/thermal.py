@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -20,6 +20,7 @@ import numpy as np
 from gcxform.errormodel.model import BORDER, State
 from gcxform.errormodel.tabled import AxisTables
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 
 class Held(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from lark import Token
@@ -12,6 +12,7 @@ from gcxform.flow.listing import bare
 from gcxform.flow.run_state import whole_number
 from gcxform.syntax.grammar import is_comment
 from gcxform.syntax.tree import BLANKS, Block, Mark, Statement, Word
+from gcxform.values import dataclass
 
 ORDERS = {
     "sub": ("sub", "endsub"),

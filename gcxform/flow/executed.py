@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from hashlib import sha256
 from math import isnan
 
@@ -15,6 +15,7 @@ from gcxform.modal.inventory import Account, nothing_held
 from gcxform.syntax.source import Source, lines_in
 from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 NEAR = 1e-11  # of a value: as many digits as are written
 

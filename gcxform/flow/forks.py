@@ -9,7 +9,6 @@ counts. That is so whatever the language calls it; which lines these are says a 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,6 +22,7 @@ from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Statement
 from gcxform.syntax.undecided import Undecided
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 HINT = "set what it reads with parameters in [input], or use passes that keep positions"
 

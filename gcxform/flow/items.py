@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from lark import Token, Tree
 
 from gcxform.syntax.grammar import rule_of, span_of
+from gcxform.values import dataclass
 
 NUMBER = "NUMBER"
 """The terminal of a grammar that stands for numbers."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from gcxform.dialect.arithmetic import Key
 from gcxform.flow.constructs import Construct, Constructs, OWord
@@ -26,6 +26,7 @@ from gcxform.flow.settled import Again, Changes
 from gcxform.flow.skipped_stretches import Effect, Join
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Statement
+from gcxform.values import dataclass
 
 LEAVING = frozenset({"break", "continue"})
 

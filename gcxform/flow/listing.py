@@ -7,7 +7,6 @@ seam: who comes to a seam has left a file at its end.
 from __future__ import annotations
 
 from bisect import bisect_right
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.printed import is_output, prints_values
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
+from gcxform.values import dataclass
 
 CODES_OF_CALLS = frozenset({97, 98, 99, 198})
 CALLS_WITH_VALUES = frozenset({65, 66, 66.1, 67})

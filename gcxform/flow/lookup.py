@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from gcxform.dialect.program_rules import LookupRule
 from gcxform.system import inputs
 from gcxform.system.places import lies_in
+from gcxform.values import dataclass
 
 SHOWN = 3  # files that a message names
 

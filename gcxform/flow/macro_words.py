@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +19,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import BLANKS, Block, Comment, Statement
 from gcxform.syntax.undecided import Undecided
+from gcxform.values import dataclass
 
 CONDITION = -3
 """Which of the parts of a flow word is its condition: before GOTO, THEN or DO and what follows."""

@@ -10,7 +10,7 @@ moves, or what programs called otherwise move call it as well, no manual at hand
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from gcxform.flow.run_state import Call, RunState, computed
 from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.modal.meaning.tables import COLUMNS, NUMBER
 from gcxform.syntax.tree import Word
+from gcxform.values import dataclass
 
 BEGINS, ENDS = "G66", "G67"
 STRAIGHT = frozenset({NUMBER["G0"], NUMBER["G1"]})

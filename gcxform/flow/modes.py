@@ -11,11 +11,11 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 
 from gcxform.flow.run_state import RunState
 from gcxform.syntax.tree import Block, Number
+from gcxform.values import dataclass
 
 STORING = re.compile(rb"[Mm][ \t0]*7[ \t]*[0-3]|#[ \t]*<[ \t]*_rpm", re.IGNORECASE)
 """What all lines have that store modes or read the speed."""

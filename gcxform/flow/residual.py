@@ -7,7 +7,7 @@ written. Those that are not known stay, and then what may set them has to stand 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from lark import Tree
@@ -16,6 +16,7 @@ from gcxform.dialect.arithmetic import Key, NoValueError
 from gcxform.flow.text import number
 from gcxform.modal.expressions.value import Evaluator, written
 from gcxform.syntax.grammar import rule_of, span_of
+from gcxform.values import dataclass
 
 Edit = tuple[int, int, str]
 """Columns of a block, from 0, and what stands there instead."""

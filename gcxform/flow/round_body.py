@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import operator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from gcxform.modal.expressions.value import parameter_of, settable
 from gcxform.syntax.grammar import rule_of
 from gcxform.syntax.tree import Block, Comment, Statement, Word
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,6 +40,7 @@ from gcxform.modal.numbers_without_point import assumed_rounding, hint_of_roundi
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Expression, Mark, Number, Statement, Word
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 NAMED = 5  # of the calls that a refusal stands in
 UNKNOWN = math.nan

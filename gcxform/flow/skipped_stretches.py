@@ -6,8 +6,6 @@ a block depends on them. Frames, tools, cutter compensation and cycles are refus
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.flow.run_state import RunState
@@ -15,6 +13,7 @@ from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.modal.meaning.tables import COLUMNS, CYCLES, NUMBER, MeaningTable
 from gcxform.syntax.tree import Block
 from gcxform.system.arrays import Flags, Ints, Small
+from gcxform.values import dataclass
 
 CARRIED = ("motion", "plane", "distance", "arc-distance")
 """Groups that may be changed, if they are programmed again before they count."""

@@ -17,7 +17,6 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import ClassVar, NoReturn
 
@@ -34,6 +33,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
 from gcxform.system.limits import how_to_raise, limits
+from gcxform.values import dataclass
 
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
 HINT = "let the CAM write plain moves in its place"

@@ -8,7 +8,6 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -21,6 +20,7 @@ from gcxform.flow.listing import Definition, Listing
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 PARAMETER = re.compile(r"#[ \t]*(<[^<>]*>|[0-9]+)?")
 

@@ -18,13 +18,14 @@ and LinuxCNC's own modules (`tests/oracles/linuxcnc_kins.py`).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Triple = tuple[float, float, float]
 Span = tuple[float, float]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
 from gcxform.config.quantities import LENGTH
@@ -18,6 +17,7 @@ from gcxform.diagnostics import Diagnostic
 from gcxform.machine import macro_tables
 from gcxform.machine.machine import SWITCHES, TIP_AT_START
 from gcxform.machine.macro_tables import MACRO
+from gcxform.values import dataclass
 
 INERT: Final = "inert-m"
 """The setting that lists M codes which move nothing."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -43,6 +43,7 @@ from gcxform.machine.machine import (
 )
 from gcxform.machine.presets import with_preset
 from gcxform.system.inputs import referred
+from gcxform.values import dataclass
 
 FILLED_IN = ("control", "tool", "work-offset", "home")
 """The tables in which a value may be left to be filled in."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
 from typing import ClassVar, Literal, NamedTuple
@@ -14,6 +14,7 @@ from gcxform.machine.kinds import Kinds
 from gcxform.machine.machine import Machine, Tool
 from gcxform.machine.presets import Presets
 from gcxform.system import inputs
+from gcxform.values import dataclass
 
 TAKEN = frozenset(
     {"file", "output", "limit", "allow_outside", "debug", "show_traceback", "help"}

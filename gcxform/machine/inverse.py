@@ -24,13 +24,13 @@ from __future__ import annotations
 import enum
 import itertools
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import EVERYWHERE, SPINDLE, Chain, Rotary, Triple, turned
 from gcxform.system.arrays import Bytes, Flags, Floats
+from gcxform.values import dataclass
 
 TOLERANCE = 1e-9  # degrees; a tip of a tool of 100 mm is then off by 2e-9 mm
 SLACK = 1e-9  # degrees and mm that rounding may take a position beyond a limit

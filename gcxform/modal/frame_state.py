@@ -7,7 +7,7 @@ positions (see `gcxform/toolpath/frames.py`), nan where they are not known.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Final
 
@@ -16,6 +16,7 @@ import numpy as np
 from gcxform.catalogue.offers import SET_ANEW
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame, Matrix, Vector
+from gcxform.values import dataclass
 
 NO_TOOL = (0.0, 0.0, 0.0)
 UNFRAMED: Final = frozenset({"work", "known", "in_spindle", "changes", "homes", "written"})

@@ -9,7 +9,7 @@ needs a fact that is not known is refused, with the line.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

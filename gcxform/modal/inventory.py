@@ -7,7 +7,7 @@ difference has a rule with a count, or the run has failed: nothing is lost in si
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Statement, Word
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 KINDS = (
     *("motions", "definitions", "assignments", "messages", "stops", "ends", "m_codes"),

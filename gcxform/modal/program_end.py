@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -20,6 +19,7 @@ from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source, lines_in
+from gcxform.values import dataclass
 
 Some = TypeVar("Some")
 SIGN = re.compile(rb"%|[Mm][ \t0]*(?:2|3[ \t]*0)")

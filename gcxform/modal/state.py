@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.frame_state import FrameState
 from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.frames import Frame
+from gcxform.values import dataclass
 
 BLOCK_DELETE = ("execute", "skip", "")
 UNITS = ("mm", "in", "")

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from typing import Any
 
 from gcxform.diagnostics import Diagnostic
 from gcxform.notebook import shown
+from gcxform.values import dataclass
 
 FORMAT = 1
 

@@ -13,7 +13,7 @@ Whatever is not understood is an error with its place. Relative paths are relati
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Final, Literal, TypeVar
@@ -38,6 +38,7 @@ from gcxform.contract.tolerance_warnings import doubts_of
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.plugin.registry import Registry
 from gcxform.system.limits import Limits, in_force
+from gcxform.values import dataclass
 
 CODES = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
 FORMAT: Final = 1

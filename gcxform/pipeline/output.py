@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform.stamps.comment import StampReader
 from gcxform.stamps.writing import Heads, Lines, Seal
+from gcxform.values import dataclass
 
 Sink = Callable[[bytes], object]
 

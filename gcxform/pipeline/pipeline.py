@@ -8,7 +8,7 @@ grow with the program. Nothing here touches the file system: see `gcxform.system
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from gcxform.config import arguments
@@ -30,6 +30,7 @@ from gcxform.pipeline.subprogram import run_subprogram
 from gcxform.plugin.registry import Registry, default_registry
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.limits import in_force
+from gcxform.values import dataclass
 
 VERIFY = ("off", "on", "full")
 

@@ -20,7 +20,7 @@ in the certificate is the largest of everything that was promised, so a pass nam
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from string import ascii_uppercase
 
@@ -51,6 +51,7 @@ from gcxform.stamps.writing import comment_line
 from gcxform.syntax.source import Source
 from gcxform.system.limits import Limits
 from gcxform.toolpath.facts import ABSOLUTE, LINEAR_ONLY, METRIC, WORKPIECE_FRAME
+from gcxform.values import dataclass
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners

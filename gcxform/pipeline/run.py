@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from gcxform.contract.passes import Pass, resolved
@@ -43,6 +43,7 @@ from gcxform.system.arrays import Floats
 from gcxform.system.heap import Heap
 from gcxform.system.worker import Worker, ahead, worker
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 Progress = Callable[[int], object]
 
@@ -383,9 +384,8 @@ class Run:
         if self.verify == "full":
             for fact in step.ensures:
                 if not fact.check(after):
-                    raise VerificationError.one(
-                        "GX602", f"{step.name} ensures {fact.name}, and the path does not have it"
-                    )
+                    message = f"{step.name} ensures {fact.name}, and the path does not have it"
+                    raise VerificationError.one("GX602", message)
         return after
 
     def check_growth(self, out: Output) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gcxform.proof.findings import Findings
 from gcxform.proof.structure import check_executed, check_kept, held_by
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 
 @dataclass

@@ -9,7 +9,7 @@ no pass turns positions into others: whoever calls it finds what it was. The cer
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 USES = {
     "units": "XYZUVWIJKRQF",

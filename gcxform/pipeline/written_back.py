@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from gcxform.emit.emitter import Emitted
 from gcxform.emit.folding import Folded
@@ -20,6 +20,7 @@ from gcxform.proof.respelled import check_kept, check_respelled
 from gcxform.proof.spelled_out import check_spelled_out
 from gcxform.syntax.source import Source, lines_in
 from gcxform.toolpath.facts import ABSOLUTE
+from gcxform.values import dataclass
 
 
 @dataclass

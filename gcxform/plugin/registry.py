@@ -12,7 +12,7 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from functools import cache
 from importlib.metadata import EntryPoint
 from inspect import getattr_static
@@ -34,6 +34,7 @@ from gcxform.machine.kinds import Kinematics
 from gcxform.machine.presets import TABLES, MachinePreset
 from gcxform.plugin import hookspecs
 from gcxform.toolpath.facts import FACTS, Fact
+from gcxform.values import dataclass
 
 CORE = "gcxform"
 KINDS: Mapping[str, str] = MappingProxyType(

@@ -25,7 +25,7 @@ radius, an inside corner without room), the program is refused, changed or not.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -38,6 +38,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.proof.compensated_stretches import Stretches
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 REACH = 1.0  # mm; what is farther off is not measured
 SHAPE = ("kind", "end", "centre", "sweep", "side", "radius", "plane", "lost")

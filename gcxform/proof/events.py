@@ -11,7 +11,7 @@ rows no longer together than the budget may lie between.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.codes import Effect
@@ -25,6 +25,7 @@ from gcxform.proof.known_positions import in_mm
 from gcxform.proof.trace import Trace
 from gcxform.proof.zeros import zeros_differ
 from gcxform.toolpath.path import Event, Toolpath
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

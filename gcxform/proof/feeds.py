@@ -21,7 +21,7 @@ of a piece may be off by b, hence 2 b, and a chord is shorter than its arc, henc
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +36,7 @@ from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Kind
 from gcxform.toolpath.still_axes import moves_linear, turns_only
 from gcxform.toolpath.travel import Lengths, lengths
+from gcxform.values import dataclass
 
 TIME_ERROR = 1e-3  # relative: what the rounding of the feeds of pieces may change
 UNEVEN = 0.25  # relative; a chord of a quarter of a circle is a tenth shorter than its arc

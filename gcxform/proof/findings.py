@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform.proof.inventory import Written
+from gcxform.values import dataclass
 
 
 @dataclass(slots=True)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from hashlib import sha256
 from math import isnan
 
@@ -33,6 +33,7 @@ from gcxform.stamps.comment import without_lines
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Event
+from gcxform.values import dataclass
 
 MESSAGE = "(...)"
 Wrong = tuple[str, int, int]

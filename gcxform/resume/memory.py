@@ -8,7 +8,7 @@ restart after it is refused.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 from typing import Final
 
@@ -21,6 +21,7 @@ from gcxform.modal.meaning.tables import CYCLES, FAMILIES, NUMBER
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import Block, Number, Word
 from gcxform.toolpath.path import Event
+from gcxform.values import dataclass
 
 
 class How(Enum):

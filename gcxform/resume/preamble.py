@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect
 from gcxform.emit.numbers import MOST_DECIMALS, text_of
 from gcxform.modal.meaning.tables import NUMBER, code_of
 from gcxform.modal.state import State
 from gcxform.resume.memory import Memory
+from gcxform.values import dataclass
 
 EXACT = 1e-9  # mm, degrees: closer positions are the same
 

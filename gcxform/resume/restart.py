@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Flags
 from gcxform.toolpath.path import Kind, Toolpath
+from gcxform.values import dataclass
 
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
 ARCS = ("G2", "G3")

@@ -6,13 +6,13 @@ The figures are those of `gcxform/calibrate/circles/deviations.py`.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from gcxform.calibrate.circles.deviations import figures, least_squares_circle
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, eq=False)

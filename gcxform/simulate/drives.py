@@ -6,11 +6,10 @@ nothing here is to the first order, and nothing shares code with what takes circ
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Triple = tuple[float, float, float]
 NONE: Triple = (0.0, 0.0, 0.0)

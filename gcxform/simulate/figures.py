@@ -15,12 +15,12 @@ where E, A and their values for one direction alone are over all targets and the
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 COVERAGE = 2.0  # the standard's factor for limits: mean plus and minus 2 s
 

@@ -7,7 +7,7 @@ the compensated program belongs to which move of the program says its source map
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from gcxform.simulate.positions import parts_of
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Kind, Toolpath
 from gcxform.toolpath.splines import points_on_splines
+from gcxform.values import dataclass
 
 PIECES = 4000  # the path is divided into about so many, at least
 MANY = 1000  # splines

@@ -7,7 +7,7 @@ The program is read as the control reads it, the compensated one is what the pip
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from gcxform.simulate.programs import StandardProgram
 from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.circles import points_on_arcs, radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
+from gcxform.values import dataclass
 
 STILL = 1e-9  # mm; an axis that moves by less has not moved
 CORRECTION = 10.0  # mm; a virtual machine may be as bad as it likes

@@ -7,7 +7,7 @@ that matter to the evaluation are kept with the text.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 DWELL = 2.0  # s: the machine stands still before the instrument reads
 PLANES: Mapping[str, Plane] = {"XY": Plane.XY, "YZ": Plane.YZ, "ZX": Plane.ZX}

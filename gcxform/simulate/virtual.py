@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -29,6 +28,7 @@ from gcxform.simulate.programs import (
 )
 from gcxform.system.arrays import Floats
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 POINTS_AROUND = 7200  # points of a circle: one every 0.05 degrees
 NEVER = 1e9  # mm; spacing of points where only the ends of moves are read

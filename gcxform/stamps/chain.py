@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, field, fields
 from datetime import datetime
 from typing import Any
 
@@ -30,6 +30,7 @@ from gcxform.machine.machine import Machine
 from gcxform.stamps.comment import PAIRS, Stamp, Stamps, named, short
 from gcxform.syntax.source import Source
 from gcxform.toolpath.facts import AT_READING, AXIS_POSITIONS, Fact
+from gcxform.values import dataclass
 from gcxform.version import VERSION
 
 Step = Pass | TextPass

@@ -22,9 +22,9 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 LONGEST = 76  # characters between the brackets
 DIGITS = 12  # of the digest of a pipeline, and of a seal

@@ -14,7 +14,7 @@ piece of a line is which slot:
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import accumulate
 from typing import Any
 
@@ -35,6 +35,7 @@ from gcxform.syntax.tree import (
     Word,
 )
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 Span = tuple[int, int]
 

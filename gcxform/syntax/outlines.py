@@ -17,7 +17,6 @@ the control executes.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +24,7 @@ import numpy as np
 from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
 from gcxform.syntax.tree import COMPUTED
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.values import dataclass
 
 BEGIN = b"\1"  # first byte of an outline: no plain line has it
 NUMBER, COMMENT, TAIL = 2, 3, 4

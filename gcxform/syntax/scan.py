@@ -14,8 +14,6 @@ Numbers are read as integer mantissas with decimals, and every number that is ta
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
@@ -23,6 +21,7 @@ from gcxform.syntax.outlines import outline
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 from gcxform.system.distinct import distinct
+from gcxform.values import dataclass
 
 LETTER, DIGIT, POINT, SIGN, BLANK, END, CODE, OTHER = 0, 1, 2, 3, 4, 5, 6, 7
 TEN_TO_INT = 10 ** np.arange(LONGEST + 1)

@@ -11,7 +11,7 @@ meanings, as they are to the control.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import repeat
 
 import numpy as np
@@ -21,6 +21,7 @@ from gcxform.syntax.layout import Layout, layout_of
 from gcxform.syntax.outlines import Comments, Outlines
 from gcxform.syntax.tree import CODES, Block, Expression, Number, Word
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 NumberColumns = tuple[Ints, Floats, Ints, Ints, Ints]
 

@@ -7,8 +7,9 @@ Latin-1 decoded, so every byte is one character.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
+
+from gcxform.values import dataclass
 
 BLANKS = str.maketrans("", "", " \t")
 CODES = frozenset("GMO")

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from gcxform.system.arrays import Flags, Ints
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

@@ -14,12 +14,13 @@ import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system.limits import how_to_raise, limits
 from gcxform.system.places import lies_in
+from gcxform.values import dataclass
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -14,10 +14,11 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import Annotated
 
 from gcxform.system.option_mark import Option
+from gcxform.values import dataclass
 
 FRAMES_A_LEVEL = 8  # calls of Python that one level of an expression may take, and some to spare
 SHALLOW = 100  # levels for which Python's own limit is enough

@@ -8,7 +8,7 @@ other one of its group: two blocks that differ must differ in what they do, or b
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import combinations, permutations
 from math import pi
 from typing import Any
@@ -24,6 +24,7 @@ from gcxform.modal.meaning.tables import FAMILIES, NUMBER
 from gcxform.testing.canon import MEANINGS, WORK
 from gcxform.testing.one_command import written_for
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 QUARTER, REST = pi / 2, 3 * pi / 2
 MODES = ("G21", "G90", "G94", "G17", "G40", "G80", "G91.1")

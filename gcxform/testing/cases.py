@@ -34,7 +34,7 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from gcxform.diagnostics import Diagnostic, GcxformError
@@ -42,6 +42,7 @@ from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
 from gcxform.testing.hints import try_hint
+from gcxform.values import dataclass
 
 SPECIAL = frozenset(
     {"input.nc", "expected.nc", "diagnostics", "certificate", "assumed", "words", "xfail"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from gcxform.contract.passes import Pass, PassContext
 from gcxform.diagnostics import GcxformError
@@ -24,6 +23,7 @@ from gcxform.testing.behaviour import check_doing
 from gcxform.testing.one_command import written_for
 from gcxform.testing.tables import check_declared
 from gcxform.toolpath.path import Plane, Toolpath
+from gcxform.values import dataclass
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 SET_ASIDE = "GMO"  # addresses whose value is a code

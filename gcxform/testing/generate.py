@@ -8,10 +8,10 @@ writes is valid there. Lengths in `Builder.position` are in mm, rotary positions
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final, TypeVar
 
 from gcxform.testing.layout import Layout, Words, number, write
+from gcxform.values import dataclass
 
 Pick = Callable[[int, int], int]
 T = TypeVar("T")

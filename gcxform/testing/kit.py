@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -40,6 +40,7 @@ from gcxform.toolpath.columns import COLUMNS
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import FeedMode, Kind, Toolpath
 from gcxform.toolpath.travel import lengths
+from gcxform.values import dataclass
 
 SLACK = 1e-7  # mm and degrees; what arithmetic may add to a promise
 ON_CIRCLE = 1e-6  # mm

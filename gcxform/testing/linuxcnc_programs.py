@@ -7,13 +7,14 @@ print, so the builder keeps a book of them.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from gcxform.testing.generate import Options, Pick
 from gcxform.testing.layout import Words, number
 from gcxform.testing.linuxcnc_language import WholeBuilder
 from gcxform.testing.shifts import Tools, no_tools
+from gcxform.values import dataclass
 
 Point = tuple[float, ...]
 TALK: Final = ("(MSG,here)", "(DEBUG,at #<deep>)", "(LOG,done)", "(DEBUG,#101 and #<deep>)")

@@ -7,13 +7,13 @@ some and clears some. A program just read has the facts of `AT_READING`.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.system.arrays import Flags
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import OWN_DISTANCES, Form, Plane, Toolpath
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

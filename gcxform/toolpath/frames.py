@@ -14,11 +14,11 @@ position is lost until it is programmed again.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 Vector = tuple[float, ...]
 Matrix = tuple[tuple[float, float, float], ...]

@@ -8,7 +8,6 @@ return new paths made with `replace`, `take` and `with_rows`, which carry `sourc
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from dataclasses import replace as dataclass_replace
 from enum import IntEnum
 from functools import cached_property
@@ -24,6 +23,7 @@ from gcxform.system.limits import how_to_raise, limits
 from gcxform.toolpath.columns import COLUMNS, TYPES, picked, typed
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.table import Tabled
+from gcxform.values import dataclass
 
 
 class Kind(IntEnum):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.dialect.dialect import LINEAR
@@ -11,6 +9,7 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import Plane, Toolpath
 from gcxform.toolpath.splines import spline_lengths
+from gcxform.values import dataclass
 
 STILL = 1e-7  # mm; linear axes that move by less stand still
 

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import repeat
 from typing import Any, Final
 
@@ -23,6 +22,7 @@ import numpy as np
 
 from gcxform.syntax.numerals import Digits
 from gcxform.system.arrays import Bytes, Flags, Ints
+from gcxform.values import dataclass
 from gcxform.view.packing import Section, Store, folded
 
 LINES: Final = 4096  # of a block

@@ -8,7 +8,6 @@ its passes are undone first, as the proof does.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -21,6 +20,7 @@ from gcxform.deviations.paired_pieces import measure
 from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.path import BLOCK_MODES, Toolpath
 from gcxform.toolpath.splines import spline_chords, splines_as_lines
+from gcxform.values import dataclass
 
 COMPARED: Final = ("kind", "end", "centre", "sweep", "feed", "feed_mode", "frame", "form", "side")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from gcxform.diagnostics import InputError
 from gcxform.pipeline.plan import Plan
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 from gcxform.view import document
 from gcxform.view.linking import Linked, linked, owners
 from gcxform.view.packing import Store

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +13,7 @@ from gcxform.system.arrays import Floats, Ints
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.tools import ToolInSpindle
+from gcxform.values import dataclass
 from gcxform.view import lines, paths
 from gcxform.view.packing import Section, Store
 from gcxform.view.reading import Shown

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.facts import AXIS_POSITIONS, TIP_POSITIONS
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 GROUPS = {
     "motion": "motion",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -13,6 +13,7 @@ from gcxform.system.arrays import Floats, Ints
 from gcxform.system.limits import in_force, limits
 from gcxform.toolpath.facts import COMPENSATED
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 from gcxform.view.linking import Linked, changed_by, linked, undone
 
 MANY: Final = 1 << 28  # rows; what a run writes has been limited window by window

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -34,6 +34,7 @@ from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary, Triple
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 LEVER: Final = 100.0
 """Unknown tilts are scaled by this length in mm, to be as large as shifts."""

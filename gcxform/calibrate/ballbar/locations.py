@@ -16,14 +16,13 @@ and YOA = dyAY, ZOA = dzAY, BOA = beAY, COA = gaAY. With B and C it is the same 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.calibrate.ballbar.ballbar import Identified
 from gcxform.calibrate.rotary.predicted_check import effects
 from gcxform.machine.chain import Chain
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 TURNS = "ABC"
 GREEK = ("al", "be", "ga")

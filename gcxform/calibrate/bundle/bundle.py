@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Final
 
@@ -28,6 +28,7 @@ from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Chain, Rotary
 from gcxform.system.arrays import Flags, Floats
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 BLIND: Final = 1e-7
 """Singular values below this part of the largest, columns of length 1, tell nothing."""

@@ -13,7 +13,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -24,6 +23,7 @@ from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, Triple
 from gcxform.system.arrays import Flags, Floats
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 GRID: Final = 15.0  # degrees
 FAINT: Final = 1e-6

@@ -16,7 +16,7 @@ again.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -27,6 +27,7 @@ from gcxform.diagnostics import InputError, Location, UsageError
 from gcxform.errormodel.model import AXES
 from gcxform.machine.chain import Chain
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 TOUCHES: Final = 5
 ANGLE: Final = 0.01  # degrees; a log that says others belongs to other poses

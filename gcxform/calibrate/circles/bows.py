@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -25,6 +24,7 @@ from gcxform.calibrate.circles.scales import Told, mean
 from gcxform.diagnostics import InputError
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 NODES: Final = 33
 """Of a bow: lines between them leave a thousandth of it ((1 / 16)^2 / 8 is half of that)."""

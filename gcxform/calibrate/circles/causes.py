@@ -26,7 +26,6 @@ some degrees behind a reversal are left out of the fit, and what they are off it
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
@@ -35,6 +34,7 @@ import numpy as np
 from gcxform.errormodel.model import AXES
 from gcxform.machine.chain import Triple
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.values import dataclass
 
 PLANES: Final[Mapping[str, tuple[int, int]]] = {"XY": (0, 1), "YZ": (1, 2), "ZX": (2, 0)}
 """The axes of a plane, first and second: angles are from the first towards the second."""

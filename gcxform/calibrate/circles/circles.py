@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -35,6 +35,7 @@ from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.diagnostics import InputError, Location
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 SENSES: Final[Mapping[str, int]] = {"ccw": 1, "cw": -1, "probed": 0}
 SEEN: Final = 3.0

@@ -26,7 +26,6 @@ its exports of readings, as of any other, `Layout` says which columns there are.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -43,6 +42,7 @@ from gcxform.diagnostics import InputError, Location
 from gcxform.errormodel.model import AXES
 from gcxform.machine.chain import Triple
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 CLOSED: Final = (".b5r", ".b5t", ".b20", ".b20t")
 FEEDS: Final = {"mm/min": 1.0 / 60.0, "mm/s": 1.0, "m/min": 1000.0 / 60.0, "in/min": 25.4 / 60.0}

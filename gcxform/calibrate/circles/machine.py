@@ -11,7 +11,6 @@ in the report.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -27,6 +26,7 @@ from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.linear import Linear
 from gcxform.errormodel.model import AXES, ErrorModel, check_contraction
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 ANGLES: Final = {"XY": ("C0Y", 1.0), "YZ": ("A0Z", 1.0), "ZX": ("B0Z", -1.0)}
 """The squareness of a plane by ISO 230-1, and its sign where the angle is more than 90 degrees."""

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -28,6 +27,7 @@ from gcxform.calibrate.rotary.axis import REJECTED
 from gcxform.calibrate.solution import Solution, solve
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 BAR: Final = "bar"
 NONE: Final = "none"

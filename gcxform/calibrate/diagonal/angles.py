@@ -21,7 +21,7 @@ It is a test of what was identified, and changes nothing in it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, Final, NamedTuple
 
@@ -33,6 +33,7 @@ from gcxform.calibrate.diagonal.readings import Diagonals, beam
 from gcxform.calibrate.diagonal.step_diagonal import Identified
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 DEGREES: Final = (1, 3)  # of f: each is a test
 RATE: Final = 0.01  # of false alarms, of all tests together

@@ -17,12 +17,12 @@ for each set-up, mm at the end of the diagonal; a constant for each run of a lin
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from gcxform.calibrate.diagonal.readings import Diagonals, LinearTest, Volume, beam, sideways
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

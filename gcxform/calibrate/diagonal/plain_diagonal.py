@@ -13,7 +13,6 @@ The lengths hardly depend on the alignment of the beams (by the cosine).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -23,6 +22,7 @@ from gcxform.calibrate.solution import Scatter, Solution, solve
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.model import check_contraction
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 BLIND: Final = (
     "a plain diagonal test is blind to scale errors with X^2 sX + Y^2 sY + Z^2 sZ = 0 (X, Y, Z: "

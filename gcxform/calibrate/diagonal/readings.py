@@ -10,7 +10,6 @@ the diagonal, and the reading is the part of the motion along it.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeVar
 
 import numpy as np
@@ -18,6 +17,7 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.errormodel.model import AXES
 from gcxform.system.arrays import Floats
+from gcxform.values import dataclass
 
 Signs = tuple[int, int, int]
 FOUR: Final[tuple[Signs, ...]] = ((1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))

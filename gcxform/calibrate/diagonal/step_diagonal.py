@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Final
 
@@ -36,6 +36,7 @@ from gcxform.diagnostics import InputError
 from gcxform.errormodel.functions import AxisFunction, AxisFunctions
 from gcxform.errormodel.model import AXES, check_contraction
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 NOISE: Final = 0.001  # mm, of one step
 REJECTED: Final = 3.0  # times the stated noise

@@ -21,7 +21,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -32,6 +31,7 @@ from gcxform.calibrate.solution import CAUCHY, TIGHT, Scatter, belonging, cauchy
 from gcxform.diagnostics import InputError, Location
 from gcxform.machine.chain import Triple, turned
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 UNKNOWNS: Final = 7
 ILL: Final = 20.0

@@ -11,12 +11,12 @@ Nothing need be known of the angles, and so nothing tests them: `rotary` uses th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from gcxform.system.arrays import Flags, Floats
+from gcxform.values import dataclass
 
 STEPS: Final = 50
 CONVERGED: Final = 1e-10

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -17,6 +16,7 @@ from gcxform.cli.common.options import ABOVE_NOTHING
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.diagnostics import GcxformError, Location, UsageError
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 NOISE = "Standard deviation of a coordinate of a centre."

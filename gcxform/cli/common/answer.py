@@ -15,7 +15,7 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Final, TextIO
 
 import click
@@ -23,6 +23,7 @@ import click
 from gcxform.cli.common.findings import described
 from gcxform.diagnostics import Diagnostic
 from gcxform.system.stages import stage
+from gcxform.values import dataclass
 
 FORMAT: Final = 1
 ANSWER: Final = "gcxform.answer"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from gcxform.cli.common.outputs import STDOUT, check_places, same
@@ -13,6 +13,7 @@ from gcxform.cli.common.request import excluding
 from gcxform.cli.common.transform import Job
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system.places import lies_in
+from gcxform.values import dataclass
 
 SEVERAL = "-o DIR, --in-place, --check or --diff"
 

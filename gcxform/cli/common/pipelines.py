@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import click
 
@@ -12,6 +12,7 @@ from gcxform.cli.common.request import Asked
 from gcxform.diagnostics import shown
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
+from gcxform.values import dataclass
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Final
@@ -22,6 +22,7 @@ from gcxform.pipeline.chain_text import chain_doubts, parse_chain
 from gcxform.pipeline.file import SECTIONS, InputSpec, OutputSpec, PipelineSpec, load
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import Registry, default_registry
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

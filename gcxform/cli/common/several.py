@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, Final
 
 import click
@@ -18,6 +17,7 @@ from gcxform.diagnostics import GcxformError
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.stamps.chain import DONE
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 CHANGES: Final = 1
 """The exit code of `--check` where a program would be another one."""

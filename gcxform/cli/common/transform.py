@@ -6,7 +6,7 @@ import sys
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from gcxform.cli.common.outputs import STDOUT, Put, destination
@@ -18,6 +18,7 @@ from gcxform.pipeline.pipeline import Pipeline
 from gcxform.stamps.chain import edited
 from gcxform.syntax.source import Source
 from gcxform.system.heap import keep
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import copy
 import re
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from threading import Lock
@@ -28,6 +28,7 @@ from gcxform.modal.reader import Tables
 from gcxform.modal.state import State
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import WINDOW, Source
+from gcxform.values import dataclass
 
 STRIDE: Final = 2000  # lines between two states that are kept
 _END: Final = re.compile(rb"\r\n|\n|\r")

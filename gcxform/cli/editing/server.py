@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from time import process_time
 from typing import Any, Final
 
@@ -26,6 +26,7 @@ from gcxform.cli.editing.shop import Shop, Wishes
 from gcxform.cli.editing.text import Text
 from gcxform.cli.editing.worker import Worker
 from gcxform.diagnostics import Diagnostic, GcxformError
+from gcxform.values import dataclass
 from gcxform.version import VERSION
 
 SOON: Final = 0.03  # s from a change to the findings of reading

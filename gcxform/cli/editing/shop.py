@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
@@ -17,6 +17,7 @@ from gcxform.diagnostics import Diagnostic, FileError, Location, UsageError
 from gcxform.guess import guess_dialect
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 DEFAULT_FORMAT: Final = "strip comments=false"
 NO_DIALECT: Final = "GX722"

@@ -17,12 +17,12 @@ import shlex
 import shutil
 import subprocess
 import sys
-from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
 from gcxform.diagnostics import UsageError
+from gcxform.values import dataclass
 
 MARK: Final = re.compile(r"\{(call|tcl|exe|args|ini):?([^{}]*)\}")
 PIPELINE: Final = "PIPELINE"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final
 
 from gcxform.cli.plant.pools import Rows
@@ -14,6 +14,7 @@ from gcxform.cli.plant.rows import Row
 from gcxform.cli.plant.stores import Store
 from gcxform.cli.plant.tasks import Task
 from gcxform.cli.plant.work import RECEIPTS, STAGED, finished
+from gcxform.values import dataclass
 
 PACE: Final = 0.5  # s between two times at which rows are written down
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, Self
 
 from gcxform.cli.plant.stores import names_in, read_named
 from gcxform.diagnostics import GcxformError
 from gcxform.system.inputs import Visit
+from gcxform.values import dataclass
 
 MISSING = ""
 

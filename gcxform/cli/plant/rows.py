@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from typing import Any, Final, Self
 
 from gcxform.cli.plant.rests import Rests
+from gcxform.values import dataclass
 
 THROUGH: Final = ("written", "unchanged")
 STATES: Final = (*THROUGH, "refused", "failed")

@@ -11,7 +11,6 @@ import tempfile
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 from uuid import uuid4
@@ -19,6 +18,7 @@ from uuid import uuid4
 from gcxform.cli.common.programs import files_of, is_program
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system.files import sync_folder
+from gcxform.values import dataclass
 
 SCHEME: Final = "://"
 MOST_BESIDE: Final = 1 << 28

@@ -19,7 +19,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Final
@@ -35,6 +35,7 @@ from gcxform.diagnostics import FileError, UsageError
 from gcxform.system import limits
 from gcxform.system.inputs import is_anywhere
 from gcxform.system.limits import Limits
+from gcxform.values import dataclass
 
 CODES: Final = Codes("GX709", "GX710", "GX701", "GX705", "GX702")
 Names = list[Annotated[str, msgspec.Meta(min_length=1)]]

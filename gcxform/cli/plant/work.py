@@ -15,7 +15,7 @@ import json
 import os
 import threading
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any, Final
 from uuid import uuid4
@@ -33,6 +33,7 @@ from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import versions
 from gcxform.system.inputs import visit
 from gcxform.system.limits import Limits, in_force, said
+from gcxform.values import dataclass
 
 HIDDEN: Final = ".gcxform"
 STAGED, RECEIPTS = f"{HIDDEN}/staged", f"{HIDDEN}/receipts"

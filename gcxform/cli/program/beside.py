@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Self
 
@@ -16,6 +15,7 @@ import numpy as np
 
 from gcxform.system import inputs
 from gcxform.system.arrays import Ints
+from gcxform.values import dataclass
 
 MANY: Final = 200  # files of a folder that are looked at
 RUN: Final = 4  # numbers of a run of a source map

@@ -9,7 +9,7 @@ result: nothing is written, and no value on trial leaves this module but as "?".
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -22,6 +22,7 @@ from gcxform.machine.control import inert_of, settings_of
 from gcxform.machine.machine import Machine, Tool
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 STATELESS: Final = frozenset({"GX101", "GX201", "GX202", "GX205", "GX206", "GX210", "GX211"})
 """Findings about a block by itself, which hold whatever stood before it."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -22,6 +22,7 @@ from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.guess import guess_dialect
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 INERT: Final = ("control", "inert-m")
 LEFT_SHOWN: Final = 20

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
@@ -14,6 +14,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
 from gcxform.toolpath.path import Toolpath
+from gcxform.values import dataclass
 
 ATTEMPTS = 30  # in which a window's refused lines are found and left out
 

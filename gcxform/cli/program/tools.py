@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from gcxform.toolpath.circles import arc_extremes
 from gcxform.toolpath.path import Event, FeedMode, Kind, Toolpath
 from gcxform.toolpath.splines import spline_extremes
 from gcxform.toolpath.tools import NONE, ToolInSpindle
+from gcxform.values import dataclass
 
 
 class Range:

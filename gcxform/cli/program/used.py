@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from gcxform.modal.reader import windows_of
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
+from gcxform.values import dataclass
 
 Places = dict[str, Location]
 """Where something is first used, by its name."""

@@ -20,7 +20,6 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Final
@@ -28,6 +27,7 @@ from typing import Final
 from gcxform.cli.watching.settling import BESIDE
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system.files import sync_folder, write_atomically
+from gcxform.values import dataclass
 
 HIDDEN: Final = ".gcxform"
 LONGEST: Final = 255  # bytes of a name that file systems take

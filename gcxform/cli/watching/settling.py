@@ -10,12 +10,13 @@ import os
 import stat
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Final, NamedTuple
 
 from gcxform.cli.common.programs import is_program
 from gcxform.system.alone import is_being_written
+from gcxform.values import dataclass
 
 BESIDE: Final = (".gcxform.txt", ".gcxform.json")
 """How the names of files end that are put beside programs."""

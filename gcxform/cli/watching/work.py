@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any, Final
 
@@ -23,6 +23,7 @@ from gcxform.cli.watching.folders import (
 from gcxform.cli.watching.settling import Look
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all, shown
 from gcxform.stamps.chain import DONE
+from gcxform.values import dataclass
 
 SOON, LATE = 1.0, 60.0  # s: after which what could not be done is tried again, first and at most
 UNREADABLE: Final = "GX901"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from gcxform.modal.cycles.stretch import Stretch
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 UNKNOWN = 2
 """How the spindle turns where nobody knows; otherwise +1 (M3), -1 (M4), 0."""

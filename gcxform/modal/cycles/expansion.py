@@ -9,7 +9,7 @@ that all of this is done on whole columns. What stays in force is carried to the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from gcxform.modal.cycles.checks import MOST, UNKNOWN, Checks, Refusal
 from gcxform.modal.cycles.steps import Holes, Rows, pecks_of, rows_of
 from gcxform.modal.cycles.stretch import Calls, Mode, Stretch, follow, follow_fresh, joined
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.values import dataclass
 
 __all__ = ["MOST", "UNKNOWN", "Calls", "Cycles", "Refusal", "Steps"]
 

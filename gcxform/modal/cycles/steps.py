@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from operator import attrgetter
 
 import numpy as np
@@ -13,6 +12,7 @@ from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.columns import column_major
 from gcxform.toolpath.path import Event, Kind
+from gcxform.values import dataclass
 
 CODES = 100  # canned cycles have numbers below
 SAME_DEPTH = 1e-9  # part of a peck

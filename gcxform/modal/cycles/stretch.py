@@ -7,7 +7,7 @@ All that follows from its columns is done later, for many stretches at once: the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from itertools import pairwise
 from typing import Any
 
@@ -18,6 +18,7 @@ from gcxform.modal.columns import fill
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.columns import constant
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 STICKY = ("r", "normal", "p", "q", "i", "j", "k")
 SCALARS = ("position", "plane", "unit")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.syntax.tree import CODES, Block, Expression, Statement, Word
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

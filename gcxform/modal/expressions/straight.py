@@ -8,7 +8,6 @@ computed before those that read it, so this can be done unless one is computed o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import repeat
 from typing import Any
 
@@ -20,6 +19,7 @@ from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import Functions, whole_columns
 from gcxform.modal.noted import Assigned
 from gcxform.system.arrays import Floats, Ints
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

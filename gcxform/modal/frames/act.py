@@ -6,13 +6,13 @@ What a control leaves open, or what is known of it from hearsay only, is refused
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.state import Reading
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 
 class ActError(Exception):

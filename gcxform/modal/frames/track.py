@@ -11,7 +11,6 @@ nothing can go wrong before the program says them again.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, isnan, remainder
 
@@ -32,6 +31,7 @@ from gcxform.system.distinct import distinct
 from gcxform.toolpath.columns import constant
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})

@@ -5,9 +5,10 @@ It is worked out in `gcxform/modal/meaning/sorting.py`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from gcxform.syntax.tree import Statement, Word
+from gcxform.values import dataclass
 
 DRILL_WORDS = "PQLK"
 """Words that only a canned cycle in force may want."""

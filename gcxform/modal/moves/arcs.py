@@ -6,8 +6,6 @@ is the radius: positive for the arc of at most half a turn, negative for the lon
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from gcxform.dialect.dialect import Dialect
@@ -18,6 +16,7 @@ from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form, Plane, Toolpath
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

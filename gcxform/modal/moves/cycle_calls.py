@@ -9,7 +9,6 @@ by `gcxform/modal/moves/cycle_patterns.py`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -22,6 +21,7 @@ from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.columns import constant
 from gcxform.toolpath.path import Plane
+from gcxform.values import dataclass
 
 SPINDLE = np.array([0, 1, -1, UNKNOWN])
 """How the spindle turns, by the number of its mode: stopped, M3, M4, not known."""

@@ -8,7 +8,7 @@ together: that is what makes many short patterns cheap.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,7 @@ from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
+from gcxform.values import dataclass
 
 MANUAL = 88  # the cycle out of which the operator moves the tool
 

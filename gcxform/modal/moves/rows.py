@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from gcxform.system.arrays import Floats, Ints, Small
 from gcxform.toolpath.columns import column_major, constant
 from gcxform.toolpath.path import Form
+from gcxform.values import dataclass
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ end. I, J, P and Q are distances also in G91 and in G90.1, and turn with the fra
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from gcxform.modal.moves.rows import Rows
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.path import Form, Kind, Plane, Toolpath
+from gcxform.values import dataclass
 
 THIRDS = 2.0 / 3.0
 
