@@ -108,3 +108,20 @@ def test_features(tmp_path: Path) -> None:
 def test_a_dwell_of_a_second_and_a_half(tmp_path: Path, dialect: str, word: str) -> None:
     found = info(tmp_path, f"G21 G90 G94\nG4 {word}\nM30\n", dialect=dialect)
     assert found["time_s"]["dwell"] == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize(
+    ("program", "guessed", "comments"),
+    [
+        ("%\nO9004 (ENDS) ;\n(WAITS) ;\n;\n#10000= 2 ;\nG103 P0 ;\nM30 ;\n%\n", "haas", 2),
+        ("0 BEGIN PGM P MM\n1 L X+1 R0 FMAX ; TO IT\n2 END PGM P MM\n", "heidenhain", 1),
+    ],
+)
+def test_words_without_a_dialect_are_those_of_the_likeliest(
+    tmp_path: Path, program: str, guessed: str, comments: int
+) -> None:
+    (tmp_path / "p.nc").write_text(program)
+    found = json.loads(call("info", "--json", str(tmp_path / "p.nc")).stdout)
+    assert found["guessed"] == [guessed]
+    assert found.get("not_read", 0) == 0
+    assert found["comments"] == comments

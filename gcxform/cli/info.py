@@ -21,11 +21,12 @@ from gcxform.cli.program.tools import Extents, Tools
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import written_out
-from gcxform.flow.translated import translated_so_far
-from gcxform.guess import guess_dialect
+from gcxform.flow.translated import Translated, translated_so_far
+from gcxform.guess import Guess, guess_dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
 from gcxform.stamps.chain import told
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.scan import Window
@@ -57,7 +58,8 @@ def command(file: str, dialect: str | None, **asked: Any) -> None:
         found: dict[str, Any] = {"file": source.name, "bytes": source.size}
         found |= {"stamps": said} if (said := told(stamps_in(source))) else {}
         if kind is None:
-            found |= _words(source, Dialect) | _guess(source)
+            guess = guess_dialect(source)
+            found |= _guessed_words(source, guess, reading) | _guess(guess)
         elif kind.translator is not None:
             found |= _foreign(source, kind, reading, speeds)
         else:
@@ -80,14 +82,8 @@ def _foreign(
 ) -> dict[str, Any]:
     """Return what is in a program that is turned into blocks, up to what is refused of it."""
     blocks, error = translated_so_far(source, dialect, reading)
-    said = _words(blocks, dialect)
-    found: dict[str, Any]
-    ends: Counter[str] = Counter()
-    for text in source.windows():
-        ends.update(_line_ends(text))
-    found = {"lines": len(blocks.lines), "line_ends": dict(ends), "blocks": said["lines"]}
-    found |= {name: said[name] for name in ("comments", "codes", "letters")}
-    found |= _meaning(Tolerant(dialect, blocks, reading), said["codes"], speeds)
+    found = _foreign_words(source, blocks, dialect)
+    found |= _meaning(Tolerant(dialect, blocks, reading), found["codes"], speeds)
     for part in ("codes", "events"):
         spelled = dialect.tip_rule.spelled
         found[part] = {spelled.get(name, name): n for name, n in found[part].items()}
@@ -98,15 +94,35 @@ def _foreign(
     return found
 
 
+def _foreign_words(source: Source, blocks: Translated, dialect: type[Dialect]) -> dict[str, Any]:
+    """Return the words of a program that is turned into blocks."""
+    said = _words(blocks, dialect)
+    ends: Counter[str] = Counter()
+    for text in source.windows():
+        ends.update(_line_ends(text))
+    found = {"lines": len(blocks.lines), "line_ends": dict(ends), "blocks": said["lines"]}
+    return found | {name: said[name] for name in ("comments", "codes", "letters")}
+
+
 def _speeds(machine: Machine | None) -> dict[str, float]:
     """Return the top speeds of the axes of a machine, as far as they are known."""
     axes = machine.axes if machine else {}
     return {name: axis.max_speed for name, axis in axes.items() if axis.max_speed is not None}
 
 
-def _guess(source: Source) -> dict[str, Any]:
+def _guessed_words(source: Source, guess: Guess, reading: Reading) -> dict[str, Any]:
+    """Return the words of a program as the likeliest dialect spells them."""
+    if not guess.dialects:
+        return _words(source, Dialect)
+    dialect = default_registry().dialects[guess.dialects[0]]
+    if dialect.translator is None:
+        return _words(source, dialect)
+    blocks, _ = translated_so_far(source, dialect, reading)
+    return _foreign_words(source, blocks, dialect)
+
+
+def _guess(guess: Guess) -> dict[str, Any]:
     """Return which dialect a program may be in, with what speaks for each and against it."""
-    guess = guess_dialect(source)
     evidence = {
         name: [f"{item.weight:+.1f} {item.what}" for item in items]
         for name, items in guess.evidence.items()
