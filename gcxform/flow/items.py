@@ -54,14 +54,14 @@ class Part:
         return Item(self.kind, self.names, own, self.place)
 
 
-def part_of(node: Any, numbers: list[str]) -> Part:
+def part_of(node: Any, numbers: list[Token]) -> Part:
     """Return a child of the start rule; its numbers are put behind those there are."""
     tokens = [node] if isinstance(node, Token) else [*_tokens(node)]
     names, slots = [], []
     for token in tokens:
         if token.type.rsplit("__", 1)[-1] == NUMBER:
             slots.append(len(numbers))
-            numbers.append(str(token))
+            numbers.append(token)
         else:
             names.append(str(token).upper())
     kind = node.type.lower() if isinstance(node, Token) else rule_of(node)

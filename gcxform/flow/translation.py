@@ -17,10 +17,10 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Sequence
-from functools import cache, lru_cache
+from functools import cache
 from typing import ClassVar, NoReturn
 
-from lark import Lark
+from lark import Lark, Token
 from lark.exceptions import UnexpectedInput
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
@@ -29,6 +29,7 @@ from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item, Part, part_of
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
+from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.modal.state import Reading
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
@@ -37,10 +38,9 @@ from gcxform.values import dataclass
 
 COMMENT, BLOCK_DELETE = "comment", "block_delete"
 HINT = "let the CAM write plain moves in its place"
-LATELY = 512  # lines that are the only ones of their shape, and are kept
+LATELY = 4096  # shapes with numbers in names and comments that are kept
 QUICK = 4  # lines that are only translated, in the time of one that is executed
 BRACKETS = str.maketrans("()", "[]")
-SLOT = "\uffff"  # stands for a number in a shape: no program, read as bytes, has it
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,8 @@ class Translator(ABC):
         self._lark = _grammar(*self.grammar)
         self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, _Shape] = {}
-        self._lone_lines = lru_cache(LATELY)(self._lone_line)
+        self._partly: dict[tuple[str, ...], _Shape] = {}
+        self._fixed: dict[str, tuple[int, ...]] = {}
         self._items: tuple[Item, ...] = ()
 
     @abstractmethod
@@ -170,28 +171,45 @@ class Translator(ABC):
         bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
         return tuple(part.item(bare) for part in shape.parts)
 
-    def _shape(self, line: int) -> tuple[_Shape, list[str]]:
-        """Return the shape of a line, and its numbers.
+    def _shape(self, line: int, text: str | None = None) -> tuple[_Shape, Sequence[str]]:
+        """Return the shape of a line, or of a text for it, and its numbers.
 
-        A line with numbers in a comment, or in a name, is the only one of its shape; in a loop it
-        is read more than once.
+        Those in a comment, or in a name, belong to the shape.
         """
-        pieces = self._split(self.lines[line])
+        text = self.lines[line] if text is None else text
+        pieces = self._split(text)
         found, key = pieces[1::2], SLOT.join(pieces[::2])
         shape = self._shapes.get(key)
         if shape is not None:
             return shape, found
-        shape, numbers = self._lone_lines(line)
+        fixed = self._fixed.get(key)
+        if fixed is not None:
+            shape = self._partly.get((key, *[found[k] for k in fixed]))
+            if shape is not None:
+                return shape, [number for k, number in enumerate(found) if k not in fixed]
+        return self._new_shape(line, text, key, found)
+
+    def _new_shape(
+        self, line: int, text: str, key: str, found: list[str]
+    ) -> tuple[_Shape, Sequence[str]]:
+        """Return the shape of a line of which there was none, and its numbers."""
+        numbers, parts = self._parsed(line, text)
+        shape = self._shape_of(text, numbers, parts)
         if numbers == found:
             self._shapes[key] = shape
+            return shape, numbers
+        places = [at.span() for at in self.number.finditer(text)]
+        taken = {number.start_pos: str(number) for number in numbers}
+        own = [k for k, (at, _) in enumerate(places) if taken.get(at) == found[k]]
+        fixed = tuple(k for k in range(len(found)) if k not in own)
+        if len(own) < len(numbers) or self._fixed.setdefault(key, fixed) != fixed:
+            return shape, numbers
+        if len(self._partly) >= LATELY:
+            self._partly.clear()
+        self._partly[key, *[found[k] for k in fixed]] = shape
         return shape, numbers
 
-    def _lone_line(self, line: int) -> tuple[_Shape, list[str]]:
-        numbers, parts = self._parsed(line)
-        return self._shape_of(line, numbers, parts), numbers
-
-    def _shape_of(self, line: int, numbers: list[str], parts: tuple[Part, ...]) -> _Shape:
-        text = self.lines[line]
+    def _shape_of(self, text: str, numbers: Sequence[str], parts: tuple[Part, ...]) -> _Shape:
         said = [part for part in parts if part.kind == COMMENT]
         comments = "".join(_comment(text[slice(*part.place)]) for part in said)
         rest = [part for part in parts if part.kind != COMMENT]
@@ -209,15 +227,15 @@ class Translator(ABC):
 
     def items_in(self, text: str) -> tuple[Item, ...]:
         """Return the items of a text that stands for the line. Raises InputError."""
-        numbers, parts = self._parsed(self.line, text)
+        shape, numbers = self._shape(self.line, text)
         bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
-        return tuple(part.item(bare) for part in parts)
+        return tuple(part.item(bare) for part in shape.parts)
 
-    def grammar_named(self, package: str, name: str) -> Lark:
-        """Return another grammar of the language, as `grammar` names one."""
-        return _grammar(package, name)
+    def grammar_named(self, package: str, name: str) -> TreeShapes:
+        """Return what parses by another grammar of the language, as `grammar` names one."""
+        return TreeShapes(_grammar(package, name))
 
-    def _parsed(self, line: int, text: str | None = None) -> tuple[list[str], tuple[Part, ...]]:
+    def _parsed(self, line: int, text: str | None = None) -> tuple[list[Token], tuple[Part, ...]]:
         """Return the numbers of a line, and its parts; or of another text for it."""
         text = self.lines[line] if text is None else text
         try:
@@ -226,7 +244,7 @@ class Translator(ABC):
             column, message = refusal_of(error, text)
             what = f"this is not a program for {self.dialect.name}: {message}"
             raise self._error(line, "GX101", what, (column - 1, column), "") from None
-        numbers: list[str] = []
+        numbers: list[Token] = []
         return numbers, tuple(part_of(child, numbers) for child in tree.children)
 
     # --- files ---

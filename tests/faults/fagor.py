@@ -295,7 +295,7 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: a sign of programs stands for numbers in shapes",
-        TRANSLATION,
+        "gcxform/flow/tree_shapes.py",
         'SLOT = "\\uffff"',
         'SLOT = "#"',
         WALK,

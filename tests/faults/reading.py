@@ -4,7 +4,45 @@ from __future__ import annotations
 
 from faults.mutation import CORPUS, FACTS, FOUND, LIMITS, READING, VERIFY, Mutation
 
+TREES = "gcxform/flow/tree_shapes.py"
+OF_TREES = "tests/test_tree_shapes.py"
+
 MUTATIONS = (
+    Mutation(
+        "trees: a number with a point is one without",
+        TREES,
+        '    return "#" if number.isdigit() else "," if number[0] == "." else "."\n',
+        '    return "#"\n',
+        f"{OF_TREES}::test_trees_are_larks",
+    ),
+    Mutation(
+        "trees: what ends behind another number stays where it was",
+        TREES,
+        "end + moved[within]",
+        "end + moved[before]",
+        f"{OF_TREES}::test_trees_are_larks",
+    ),
+    Mutation(
+        "trees: a number in a name is any number",
+        TREES,
+        "        fixed = tuple(k for k in range(len(numbers)) if k not in slots)\n",
+        "        fixed = ()\n",
+        f"{OF_TREES}::test_trees_are_larks",
+    ),
+    Mutation(
+        "shapes: a number in a name is any number",
+        "gcxform/flow/translation.py",
+        "            shape = self._partly.get((key, *[found[k] for k in fixed]))\n",
+        "            shape = next((s for k, s in self._partly.items() if k[0] == key), None)\n",
+        f"{OF_TREES}::test_what_is_no_number_of_a_line_is_of_its_shape",
+    ),
+    Mutation(
+        "klartext: a structure stands where that of the first line of its shape does",
+        "plugins/gcxform_plugins/dialects/heidenhain/klartext.py",
+        '            words = self.lines[self.line].partition("*")[2].lstrip("* -")\n',
+        '            words = self.lines[self.line][slice(*first.place)].lstrip("* -")\n',
+        f"{OF_TREES}::test_what_is_no_number_of_a_line_is_of_its_shape",
+    ),
     # reading
     Mutation(
         "reading: inches are millimetres",

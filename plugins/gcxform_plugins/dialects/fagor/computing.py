@@ -115,7 +115,6 @@ class Computing(Polar):
             if number.isdigit()
         }
         self.doubtful: set[str] = set()
-        self._trees: dict[str, Node] = {}
 
     @cached_property
     def _computed(self) -> Any:
@@ -123,9 +122,7 @@ class Computing(Polar):
 
     def tree_of(self, text: str) -> Any:
         """Return the tree of a line that computes. Raises UnexpectedInput."""
-        if text not in self._trees:
-            self._trees[text] = self._computed.parse(text)
-        return self._trees[text]
+        return self._computed.parse(text)
 
     @property
     def values(self) -> Values:

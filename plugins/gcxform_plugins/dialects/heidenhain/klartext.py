@@ -75,7 +75,7 @@ class Klartext(Cycles):
             first = items[0]
         kind = first.kind
         if kind == "structure":
-            words = self.lines[self.line][slice(*first.place)].lstrip("* -")
+            words = self.lines[self.line].partition("*")[2].lstrip("* -")
             return [f"({words.strip().translate(BRACKETS)})"]
         if kind == "outside" and not self.begun:
             return []

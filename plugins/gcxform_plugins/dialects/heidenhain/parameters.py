@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from decimal import Decimal
 from functools import cached_property, lru_cache
 from typing import Any
@@ -38,7 +38,6 @@ WHY = {
     29: "FN 29 sets values of the PLC",
 }
 CONTROL = range(100, 200)
-FORMULAS = 4096  # that are kept as they were parsed
 
 
 Node = Tree[Token]
@@ -88,12 +87,6 @@ class Parameters(Labels):
         """The grammar of lines that compute."""
         return self.grammar_named("gcxform_grammars", "heidenhain_computed")
 
-    @cached_property
-    def parsed_formulas(self) -> Callable[[str], Any]:
-        """What parses a line that computes; a loop comes back to the same ones."""
-        parse = self.grammar_of_formulas.parse
-        return lru_cache(FORMULAS)(lambda text: parse(text).children[0])
-
     def worth(self, node: Any) -> float:
         """Return what a formula is worth. Raises NoValueError."""
         return Formula(self.q).value(node)
@@ -105,7 +98,7 @@ class Parameters(Labels):
             return self._other_function(item, int(match[1]), match[2])
         self.computes = True
         try:
-            node: Any = self.parsed_formulas(item.name)
+            node: Any = self.grammar_of_formulas.parse(item.name).children[0]
         except UnexpectedInput:
             if TEXTS.search(item.name):
                 self._forget(item.name)

@@ -34,6 +34,8 @@ STATE = (
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
     *("selected", "by_cycle"),
 )
+CHANGING = frozenset((dict, list, set))
+"""The types of what is changed in its place: as it was it is known by a copy alone."""
 
 
 class Programs(Runs):
@@ -55,7 +57,8 @@ class Programs(Runs):
             return super().blocks(items)
         if self.rest_kept:
             return self._kept(items, self.rest_kept)
-        before = {name: copy(getattr(self, name)) for name in STATE}
+        before = {name: getattr(self, name) for name in STATE}
+        before |= {name: copy(value) for name, value in before.items() if type(value) in CHANGING}
         try:
             self._check_beside(items)
             return [*super().blocks(items)]

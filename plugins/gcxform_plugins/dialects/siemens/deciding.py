@@ -30,7 +30,6 @@ class Deciding(Variables):
     def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.counting: dict[int, float] = {}
-        self._trees: dict[str, Node] = {}
         self.kept_until, self.kept_why = 0, ""
         self.decides = self.loops_on = self.perhaps = False
         self.flow: Mapping[str, Callable[[Node], None]] = {
@@ -61,9 +60,7 @@ class Deciding(Variables):
 
     def tree_of(self, text: str) -> Any:
         """Return the tree of a line that computes. Raises UnexpectedInput."""
-        if text not in self._trees:
-            self._trees[text] = self.grammar_of_expressions.parse(text)
-        return self._trees[text]
+        return self.grammar_of_expressions.parse(text)
 
     def _part(self) -> Part:
         part = self.structure.at.get(self.line)
