@@ -88,8 +88,24 @@ def test_trees_are_larks(grammar: str) -> None:
     [
         (
             "siemens",
-            ["G90 G1 F9 X=5 Z=R1", "X=15 Z=R1", "X=-.5 Z=R1", "X=5 Z=R12", "X7 Z=R12 ;to 5 mm", "X7 ;to 5 mm", "X8 ;to 6 mm"],
-            ["G90 G1 X5 Z2 F9", "X15 Z2", "X-0.5 Z2", "X5 Z3", "X7 Z3 (to 5 mm)", "X7 (to 5 mm)", "X8 (to 6 mm)"],
+            [
+                "G90 G1 F9 X=5 Z=R1",
+                "X=15 Z=R1",
+                "X=-.5 Z=R1",
+                "X=5 Z=R12",
+                "X7 Z=R12 ;to 5 mm",
+                "X7 ;to 5 mm",
+                "X8 ;to 6 mm",
+            ],
+            [
+                "G90 G1 X5 Z2 F9",
+                "X15 Z2",
+                "X-0.5 Z2",
+                "X5 Z3",
+                "X7 Z3 (to 5 mm)",
+                "X7 (to 5 mm)",
+                "X8 (to 6 mm)",
+            ],
         ),
         ("heidenhain", ["9 * - 12 mm", "10 * - 12 mm", "110 * - 3"], ["(12 mm)", "(12 mm)", "(3)"]),
     ],
