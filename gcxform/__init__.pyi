@@ -102,6 +102,7 @@ from gcxform.machine.presets import MachinePreset as MachinePreset
 from gcxform.pipeline.pipeline import Pipeline as Pipeline
 from gcxform.pipeline.pipeline import Result as Result
 from gcxform.plugin.hookspecs import hookimpl as hookimpl
+from gcxform.plugin.offered import Later as Later
 from gcxform.plugin.registry import Registry as Registry
 from gcxform.syntax.tree import Block as Block
 from gcxform.syntax.tree import Comment as Comment

@@ -29,6 +29,7 @@ from trees_kit import walk
 
 import gcxform
 from gcxform import cli
+from gcxform.plugin.offered import Offered
 from gcxform.plugin.registry import default_registry
 
 ROOT = Path(__file__).parents[1]
@@ -107,7 +108,7 @@ def offers() -> dict[str, set[str]]:
     """Return the modules that are loaded for a name, and those of a table of a registry."""
     found: dict[str, set[str]] = {}
     for table, entries in vars(default_registry()).items():
-        for name, offer in entries.items() if isinstance(entries, dict) else ():
+        for name, offer in entries.items() if isinstance(entries, Offered) else ():
             if (home := getattr(offer, "__module__", "")).startswith(PLUGINS):
                 found.setdefault(str(name), set()).add(home)
                 found.setdefault(f".{table}", set()).add(home)

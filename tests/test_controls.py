@@ -21,6 +21,7 @@ from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.machine.text import to_toml
+from gcxform.plugin.offered import Offered
 from gcxform.plugin.registry import Registry
 
 COUNT = 1000
@@ -322,7 +323,7 @@ class Lists(gx.ControlFiles):
 
 
 def test_a_control_that_has_tools_alone_is_not_offered(monkeypatch):
-    known = Registry(controls={"lists": Lists, "fanuc": FanucFiles})
+    known = Registry(controls=Offered({"lists": Lists, "fanuc": FanucFiles}))
     monkeypatch.setattr(verb, "default_registry", lambda *kinds: known)
     assert (Lists.reads("kinematics"), Lists.reads("tools")) == (False, True)
     assert verb.Controls("import").list_commands(click.Context(verb.command)) == ["fanuc"]

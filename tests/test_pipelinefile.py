@@ -20,6 +20,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.file import InputSpec, OutputSpec, PipelineSpec, load
 from gcxform.pipeline.schema import schema
+from gcxform.plugin.offered import Offered
 from gcxform.plugin.registry import Registry, default_registry
 
 MODEL = """format = 1
@@ -101,7 +102,8 @@ class Bend(Pass):
 
 
 REGISTRY = Registry(
-    dialects={"alpha": Alpha, "beta": Beta}, passes={"copy": Copy, "cut": Cut, "bend": Bend}
+    dialects=Offered({"alpha": Alpha, "beta": Beta}),
+    passes=Offered({"copy": Copy, "cut": Cut, "bend": Bend}),
 )
 
 
@@ -262,7 +264,7 @@ def test_a_pass_that_looks_at_its_options(folder: Path) -> None:
     path = folder / "p.toml"
     path.write_text('format = 1\n[[pass]]\nuse = "picky"\nlow = 2\n')
     with pytest.raises(UsageError) as caught:
-        load(path, Registry(passes={"picky": Picky}))
+        load(path, Registry(passes=Offered({"picky": Picky})))
     (found,) = _plain(caught.value, str(path))
     assert found[:4] == ("GX713", 3, 1, "the pass 'picky': low is above high")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import time
@@ -17,7 +18,7 @@ from gcxform.catalogue import CATALOGUE
 from gcxform.cli.machine import taken_over
 from gcxform.diagnostics import Location, Severity, UsageError
 from gcxform.machine.formats import TAKEN
-from gcxform.plugin.registry import KINDS, Registry, default_registry
+from gcxform.plugin.registry import KINDS, TABLES_OF, Registry, default_registry
 
 PASSES = """
 from __future__ import annotations
@@ -76,6 +77,9 @@ def test_the_builtin_dialects_come_through_the_entry_point() -> None:
 
 def test_the_builtin_plugin_has_no_fault() -> None:
     registry = Registry.load()
+    for table in TABLES_OF.values():
+        offered = getattr(registry, table)
+        assert len(dict(offered.items())) == len(offered)
     assert registry.diagnostics == []
     names = {
         "absolute",
@@ -103,7 +107,7 @@ def test_every_builtin_dialect_format_and_control_is_listed() -> None:
     folder = Path(gcxform_plugins.__file__).parent
     dialects, formats = gcxform_plugins.gcxform_dialects(), gcxform_plugins.gcxform_error_formats()
     listed = [*dialects, *formats, *gcxform_plugins.gcxform_control_files()]
-    modules = {tuple(cls.__module__.split(".")[1:3]) for cls in listed}
+    modules = {tuple(re.split("[.:]", each.place)[1:3]) for each in listed}
     files = [
         f for kind in ("dialects", "formats", "controls") for f in folder.glob(f"{kind}/[!_]*")
     ]
@@ -312,12 +316,63 @@ def test_importing_the_registry_imports_no_plugin() -> None:
     assert done.stdout.strip() == "False"
 
 
-def test_only_the_kinds_that_are_needed_are_imported() -> None:
-    load = "controls = Registry.load('control').controls"
-    shown = "print(sorted(controls), 'gcxform_plugins.passes' in sys.modules)"
-    code = f"import sys; from gcxform.plugin.registry import Registry; {load}; {shown}"
+def test_a_thing_is_imported_when_it_is_used() -> None:
+    load = "dialects = Registry.load().dialects; dialects['grbl']"
+    shown = "print(len(dialects) > 20, *(f'gcxform_plugins.dialects.{n}' in sys.modules for n in"
+    code = f"import sys; from gcxform.plugin.registry import Registry; {load}; {shown} NAMES))"
+    code = code.replace("NAMES", "['grbl', 'fanuc', 'siemens']")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "['fanuc', 'linuxcnc', 'siemens'] False"
+    assert done.stdout.split() == ["True", "True", "False", "False"]
+
+
+CLASS = PASSES.partition("@gx.hookimpl")[0]
+LATER = HEAD + "def gcxform_passes(): return [gx.Later('shift', 'acme_gx:Shift')]\n"
+
+
+def later(place: str) -> str:
+    return LATER.replace("acme_gx:Shift", place)
+
+
+def test_a_pass_may_be_named_with_its_place(install: Install) -> None:
+    install("acme-gx", CLASS.format(name="shift") + LATER)
+    registry = Registry.load()
+    assert registry.pass_("shift").name == "shift"
+    assert registry.origin("pass", "shift") == "acme-gx 1.0"
+    assert warnings(registry) == []
+
+
+@pytest.mark.parametrize(
+    ("place", "name", "said"),
+    [
+        ("acme_none:Shift", "shift", "cannot load the pass 'shift': ModuleNotFoundError"),
+        ("acme_gx:Shift", "other", "names the pass 'shift', and acme_gx:Shift is 'other'"),
+        ("acme_gx:Lost", "shift", "cannot load the pass 'shift': AttributeError"),
+        ("acme_gx:gx", "shift", "what is not a pass"),
+        ("acme_gx", "shift", "cannot load the pass 'shift'"),
+    ],
+)
+def test_a_pass_that_is_not_what_was_named(
+    install: Install, place: str, name: str, said: str
+) -> None:
+    """It is left out, and who asks for it is told why."""
+    install("acme-gx", CLASS.format(name=name) + later(place))
+    registry = Registry.load()
+    assert warnings(registry) == []
+    with pytest.raises(UsageError) as refused:
+        registry.pass_("shift")
+    assert said in refused.value.diagnostics[0].hint
+    (message,) = warnings(registry)
+    assert said in message
+    assert "shift" not in registry.passes
+    assert "shift" not in dict(registry.passes.items())
+    assert len(list(registry.passes.values())) == len(registry.passes)
+
+
+def test_two_of_a_name_are_noticed_by_their_names(install: Install) -> None:
+    install("acme-gx", later("acme_none:Shift"))
+    install("rival-gx", later("rival_none:Shift"))
+    with pytest.raises(UsageError, match="two plugins offer the pass 'shift'"):
+        Registry.load()
 
 
 def test_every_kind_has_an_origin(install: Install) -> None:

@@ -35,10 +35,11 @@ KINDS = {
 def command(kind: str, name: str | None) -> None:
     """List things of a kind, or describe one of them."""
     registry = default_registry()
-    warn(registry.diagnostics)
     things: Mapping[str, type] = getattr(registry, kind)
+    loaded = {n: things[n] for n in (things if name is None else (name,)) if n in things}
+    warn(registry.diagnostics)
     if name is None:
-        rows = [(n, _first_line(t), registry.origin(KINDS[kind], n)) for n, t in things.items()]
+        rows = [(n, _first_line(t), registry.origin(KINDS[kind], n)) for n, t in loaded.items()]
         keys = ("name", "says", "origin")
         values = [dict(zip(keys, row, strict=True)) for row in rows]
         answer({"kind": kind, "things": values}, _table(rows))

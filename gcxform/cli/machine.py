@@ -127,7 +127,7 @@ class Controls(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the controls."""
-        for control in default_registry("control").controls.values():
+        for control in default_registry().controls.values():
             if control.reads("kinematics") and control.name not in self.commands:
                 self.add_command(_import_command(control))
         equip(self)
@@ -136,7 +136,7 @@ class Controls(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return the command of a control; where there is none a plugin may have failed."""
         if cmd_name not in self.list_commands(ctx):
-            warn(default_registry("control").diagnostics)
+            warn(default_registry().diagnostics)
         return super().get_command(ctx, cmd_name)
 
 

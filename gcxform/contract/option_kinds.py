@@ -139,7 +139,7 @@ class Around(NamedTuple):
     """
 
     base: Path
-    formats: tuple[type[ErrorFormat], ...] = ()
+    formats: Iterable[type[ErrorFormat]] = ()
     machines: Known = NONE
     where: Location | None = None
 

@@ -127,7 +127,7 @@ def build(
     known, and its value, if it is one of another pass. Raises UsageError with all that is wrong.
     """
     owner = owner or f"the pass {getattr(pass_class, 'name', '')!r}"
-    around = Around(base, tuple(formats), machines)
+    around = Around(base, formats, machines)
     specs = _specs(pass_class)
     known = [spec.key for spec in specs]
     found = [

@@ -11,9 +11,9 @@ import importlib.metadata
 import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import redirect_stdout
+from contextlib import redirect_stdout, suppress
 from dataclasses import field, fields, replace
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import EntryPoint
 from inspect import getattr_static
 from types import MappingProxyType
@@ -33,6 +33,7 @@ from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.machine.presets import TABLES, MachinePreset
 from gcxform.plugin import hookspecs
+from gcxform.plugin.offered import Later, Offered, Waiting
 from gcxform.toolpath.facts import FACTS, Fact
 from gcxform.values import dataclass
 
@@ -49,6 +50,18 @@ KINDS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The kinds of things a plugin offers, each with its hook."""
+TABLES_OF: Mapping[str, str] = MappingProxyType(
+    {
+        "dialect": "dialects",
+        "pass": "passes",
+        "kinematics": "kinematics",
+        "preset": "presets",
+        "control": "controls",
+        "fact": "facts",
+        "format": "formats",
+    }
+)
+"""The attribute of a registry in which the things of a kind are."""
 
 Offer = TypeVar("Offer")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
@@ -58,19 +71,19 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 class Registry:
     """Everything that plugins offer, each kind by name, and what was wrong with the plugins."""
 
-    dialects: dict[str, type[Dialect]] = field(default_factory=dict)
-    passes: dict[str, type[Pass] | type[TextPass]] = field(default_factory=dict)
-    kinematics: dict[str, type[Kinematics]] = field(default_factory=dict)
-    presets: dict[str, type[MachinePreset]] = field(default_factory=dict)
-    controls: dict[str, type[ControlFiles]] = field(default_factory=dict)
-    facts: dict[str, Fact] = field(default_factory=lambda: {fact.name: fact for fact in FACTS})
-    formats: dict[str, type[ErrorFormat]] = field(default_factory=dict)
+    dialects: Offered[type[Dialect]] = field(default_factory=Offered)
+    passes: Offered[type[Pass] | type[TextPass]] = field(default_factory=Offered)
+    kinematics: Offered[type[Kinematics]] = field(default_factory=Offered)
+    presets: Offered[type[MachinePreset]] = field(default_factory=Offered)
+    controls: Offered[type[ControlFiles]] = field(default_factory=Offered)
+    facts: Offered[Fact] = field(default_factory=lambda: Offered({f.name: f for f in FACTS}))
+    formats: Offered[type[ErrorFormat]] = field(default_factory=Offered)
     diagnostics: list[Diagnostic] = field(default_factory=list)
     _origins: dict[tuple[str, str], EntryPoint] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def load(cls, *kinds: str) -> Registry:
-        """Return the registry of the plugins which are installed; of some kinds, or of all.
+    def load(cls) -> Registry:
+        """Return the registry of the plugins which are installed.
 
         Raises UsageError if two of them offer the same name.
         """
@@ -82,8 +95,8 @@ class Registry:
             name = f"{point.name} of {_origin(point)}"
             if registry._register(manager, name, point):
                 points[name] = point
-        for kind in kinds or KINDS:
-            for implementation in getattr(manager.hook, KINDS[kind]).get_hookimpls():
+        for kind, hook in KINDS.items():
+            for implementation in getattr(manager.hook, hook).get_hookimpls():
                 point = points[implementation.plugin_name]
                 registry._take(kind, implementation, point)
         return registry
@@ -93,17 +106,17 @@ class Registry:
 
         Raises UsageError for what is not a pass, and for a name that is taken.
         """
-        own = dict(self.passes)
+        own: dict[str, type[Pass] | type[TextPass]] = {}
         for each in passes:
             try:
                 name = _CHECKS["pass"](each)
             except Exception as error:
                 raise UsageError.one("GX702", f"passes: {each!r:.80}: {_reason(error)}") from None
-            if name in self.passes:
+            if name in self.passes or name in own:
                 message = f"there is a pass {name!r} already: {self.origin('pass', name)}"
                 raise UsageError.one("GX801", message, hint="give the class another name")
             own[name] = each
-        return replace(self, passes=own)
+        return replace(self, passes=self.passes.also(own))
 
     def origin(self, kind: str, name: str) -> str:
         """Return the distribution, with its version, that a thing came with."""
@@ -130,7 +143,7 @@ class Registry:
         code_and_kind: tuple[str, str],
         where: Location | None,
     ) -> Offer:
-        if name in known:
+        with suppress(KeyError):
             return known[name]
         code, kind = code_and_kind
         near = did_you_mean(name, known)
@@ -165,35 +178,43 @@ class Registry:
             self._warn(point, f"fails in {KINDS[kind]}: {_reason(error)}")
             return
         for offer in offers:
-            try:
-                name = _CHECKS[kind](offer)
-            except (Exception, SystemExit) as error:
-                message = f"returns in {KINDS[kind]} what is not a {kind}: {_reason(error)}"
-                self._warn(point, message)
-            else:
+            if isinstance(offer, Later):
+                load = partial(self._loaded, kind, offer, point)
+                self._add(kind, offer.name, Waiting(load), point)
+            elif name := self._checked(kind, offer, point):
                 self._add(kind, name, offer, point)
 
+    def _checked(self, kind: str, offer: Any, point: EntryPoint) -> str:
+        """Return the name of what a plugin offers; nothing, and a warning, if it is no such."""
+        try:
+            return _CHECKS[kind](offer)
+        except (Exception, SystemExit) as error:
+            message = f"returns in {KINDS[kind]} what is not a {kind}: {_reason(error)}"
+            self._warn(point, message)
+            return ""
+
+    def _loaded(self, kind: str, offer: Later, point: EntryPoint) -> Any:
+        """Import what a plugin has named; None, and a warning, if that is not what it said."""
+        try:
+            with redirect_stdout(sys.stderr):
+                thing = offer.load()
+        except (Exception, SystemExit) as error:
+            self._warn(point, f"cannot load the {kind} {offer.name!r}: {_reason(error)}")
+            return None
+        name = self._checked(kind, thing, point)
+        if name and name != offer.name:
+            self._warn(point, f"names the {kind} {offer.name!r}, and {offer.place} is {name!r}")
+        return thing if name == offer.name else None
+
     def _add(self, kind: str, name: str, offer: Any, point: EntryPoint) -> None:
-        table = self._tables[kind]
-        if name in table:
+        table = getattr(self, TABLES_OF[kind])
+        if name in list(table):  # by the names: nothing is imported
             both = f"{self.origin(kind, name)} and {_origin(point)}"
             message = f"two plugins offer the {kind} {name!r}: {both}"
             hint = "uninstall one of them, or rename it there"
             raise UsageError.one("GX801", message, hint=hint)
-        table[name] = offer
+        table.add(name, offer)
         self._origins[kind, name] = point
-
-    @property
-    def _tables(self) -> dict[str, dict[str, Any]]:
-        return {
-            "dialect": self.dialects,
-            "pass": self.passes,
-            "kinematics": self.kinematics,
-            "preset": self.presets,
-            "control": self.controls,
-            "fact": self.facts,
-            "format": self.formats,
-        }
 
     def _warn(self, point: EntryPoint, message: str, hint: str = "") -> None:
         text = f"the plugin {point.name!r} of {_origin(point)} {message}"
@@ -202,12 +223,9 @@ class Registry:
 
 
 @cache
-def default_registry(*kinds: str) -> Registry:
-    """Return the registry of the installed plugins, loaded at the first call.
-
-    Who needs few kinds only says which, and does not wait for the others.
-    """
-    return Registry.load(*kinds)
+def default_registry() -> Registry:
+    """Return the registry of the installed plugins, loaded at the first call."""
+    return Registry.load()
 
 
 def dialect_of(given: object) -> type[Dialect]:

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 
@@ -74,11 +75,15 @@ class CentreProof:
     def __init__(self, context: PassContext, file: str = "-") -> None:
         self.file = file
         self.context = replace(context, source=context.target)
-        self.ways = ways_of(context.target)
         self.ends = {f"M{number}" for number, code in context.target.m_codes.items() if code.ends}
         self.compared = 0
         self._unknown = 0
         self._before, self._after = Stretches(), Stretches()
+
+    @cached_property
+    def ways(self) -> tuple[CompensationPass, ...]:
+        """The ways of the control, which are loaded when there is a contour."""
+        return ways_of(self.context.target)
 
     @property
     def unknown(self) -> int:

@@ -1,155 +1,142 @@
-"""The first-party plugins: they come through the same door as anybody's."""
+"""The first-party plugins: they come through the same door as anybody's.
+
+Each thing is named with its place, so that a run imports what it uses.
+"""
 
 from __future__ import annotations
 
 import gcxform as gx
 
+HERE = "gcxform_plugins"
+
+
+def _later(folder: str, places: dict[str, str]) -> list[gx.Later]:
+    """Return what a folder has: names, and `module:Class` in the folder."""
+    return [gx.Later(name, f"{HERE}.{folder}.{place}") for name, place in places.items()]
+
 
 @gx.hookimpl
-def gcxform_dialects() -> list[type[gx.Dialect]]:
+def gcxform_dialects() -> list[gx.Later]:
     """Return one class for each controller family."""
-    from gcxform_plugins.dialects.controls import industrial, pc, printers
-    from gcxform_plugins.dialects.controls.grbls import FluidNC, GrblHAL
-    from gcxform_plugins.dialects.fagor.dialect import Fagor
-    from gcxform_plugins.dialects.fanuc import Fanuc
-    from gcxform_plugins.dialects.grbl import Grbl
-    from gcxform_plugins.dialects.haas import Haas
-    from gcxform_plugins.dialects.heidenhain.dialect import Heidenhain
-    from gcxform_plugins.dialects.linuxcnc import LinuxCNC
-    from gcxform_plugins.dialects.marlin import Marlin
-    from gcxform_plugins.dialects.siemens.dialect import Siemens
-
-    grown: list[type[gx.Dialect]] = [
-        Fagor,
-        Fanuc,
-        Grbl,
-        Haas,
-        Heidenhain,
-        LinuxCNC,
-        Marlin,
-        Siemens,
-    ]
-    grown += [FluidNC, GrblHAL, pc.Centroid, pc.Mach3, pc.Mach4, pc.Masso, pc.Uccnc]
-    grown += [industrial.Brother, industrial.Gsk, industrial.Hurco, industrial.Mazak]
-    grown += [industrial.Mitsubishi, industrial.Okuma]
-    grown += [printers.Marlin2]
-    return [*grown, printers.Klipper, printers.Prusa, printers.Rrf, printers.Smoothieware]
+    places = {
+        "fagor": "fagor.dialect:Fagor",
+        "fanuc": "fanuc:Fanuc",
+        "grbl": "grbl:Grbl",
+        "haas": "haas:Haas",
+        "heidenhain": "heidenhain.dialect:Heidenhain",
+        "linuxcnc": "linuxcnc:LinuxCNC",
+        "marlin": "marlin:Marlin",
+        "siemens": "siemens.dialect:Siemens",
+        "fluidnc": "controls.grbls:FluidNC",
+        "grblhal": "controls.grbls:GrblHAL",
+        "centroid": "controls.pc:Centroid",
+        "mach3": "controls.pc:Mach3",
+        "mach4": "controls.pc:Mach4",
+        "masso": "controls.pc:Masso",
+        "uccnc": "controls.pc:Uccnc",
+        "brother": "controls.industrial:Brother",
+        "gsk": "controls.industrial:Gsk",
+        "hurco": "controls.industrial:Hurco",
+        "mazak": "controls.industrial:Mazak",
+        "mitsubishi": "controls.industrial:Mitsubishi",
+        "okuma": "controls.industrial:Okuma",
+        "marlin2": "controls.printers:Marlin2",
+        "klipper": "controls.printers:Klipper",
+        "prusa": "controls.printers:Prusa",
+        "rrf": "controls.printers:Rrf",
+        "smoothieware": "controls.printers:Smoothieware",
+    }
+    return _later("dialects", places)
 
 
 @gx.hookimpl
-def gcxform_passes() -> list[type[gx.Pass | gx.TextPass]]:
+def gcxform_passes() -> list[gx.Later]:
     """Return the passes on toolpaths, then those on text."""
-    from gcxform_plugins.passes.absolute import Absolute
-    from gcxform_plugins.passes.arcs.arcs import Arcs
-    from gcxform_plugins.passes.cutter_comp.cutter_comp import CutterComp
-    from gcxform_plugins.passes.cycles import ExpandCycles
-    from gcxform_plugins.passes.feed import FeedPass
-    from gcxform_plugins.passes.metric import Metric
-    from gcxform_plugins.passes.offsets import Offsets
-    from gcxform_plugins.passes.plane import PlanePass
-    from gcxform_plugins.passes.renumber import Renumber
-    from gcxform_plugins.passes.rtcp.repost import Repost
-    from gcxform_plugins.passes.rtcp.retarget import Retarget
-    from gcxform_plugins.passes.rtcp.rtcp import Rtcp
-    from gcxform_plugins.passes.rtcp.to_tip import ToTip
-    from gcxform_plugins.passes.segment import Segment
-    from gcxform_plugins.passes.strip import Strip
-    from gcxform_plugins.passes.volumetric.volumetric import Volumetric
-
-    return [
-        Absolute,
-        CutterComp,
-        ExpandCycles,
-        FeedPass,
-        Metric,
-        Offsets,
-        PlanePass,
-        Repost,
-        Retarget,
-        Rtcp,
-        Segment,
-        ToTip,
-        Volumetric,
-        Arcs,
-        Renumber,
-        Strip,
-    ]
+    places = {
+        "absolute": "absolute:Absolute",
+        "cutter-comp": "cutter_comp.cutter_comp:CutterComp",
+        "cycles": "cycles:ExpandCycles",
+        "feed": "feed:FeedPass",
+        "metric": "metric:Metric",
+        "offsets": "offsets:Offsets",
+        "plane": "plane:PlanePass",
+        "repost": "rtcp.repost:Repost",
+        "retarget": "rtcp.retarget:Retarget",
+        "rtcp": "rtcp.rtcp:Rtcp",
+        "segment": "segment:Segment",
+        "to-tip": "rtcp.to_tip:ToTip",
+        "volumetric": "volumetric.volumetric:Volumetric",
+        "arcs": "arcs.arcs:Arcs",
+        "renumber": "renumber:Renumber",
+        "strip": "strip:Strip",
+    }
+    return _later("passes", places)
 
 
 @gx.hookimpl
-def gcxform_error_formats() -> list[type[gx.ErrorFormat]]:
+def gcxform_error_formats() -> list[gx.Later]:
     """Return the foreign tables of machine errors."""
-    from gcxform_plugins.formats.bcnc import BcncProbe
-    from gcxform_plugins.formats.etalon import Etalon
-    from gcxform_plugins.formats.isg_csv import IsgCsv
-    from gcxform_plugins.formats.iso230_csv import Iso230Csv
-    from gcxform_plugins.formats.klipper import KlipperMesh, KlipperSkew
-    from gcxform_plugins.formats.lddm import Lddm
-    from gcxform_plugins.formats.linuxcnc_comp import LinuxCncComp
-    from gcxform_plugins.formats.renishaw_rtl import RenishawRtl
-    from gcxform_plugins.formats.siemens_cec import SiemensCec
-    from gcxform_plugins.formats.siemens_eec import SiemensEec
-    from gcxform_plugins.formats.xyz import Xyz
-
-    return [
-        BcncProbe,
-        Etalon,
-        IsgCsv,
-        Iso230Csv,
-        KlipperMesh,
-        KlipperSkew,
-        Lddm,
-        LinuxCncComp,
-        RenishawRtl,
-        SiemensCec,
-        SiemensEec,
-        Xyz,
-    ]
+    places = {
+        "bcnc-probe": "bcnc:BcncProbe",
+        "etalon": "etalon:Etalon",
+        "isg-csv": "isg_csv:IsgCsv",
+        "iso230-csv": "iso230_csv:Iso230Csv",
+        "klipper-mesh": "klipper:KlipperMesh",
+        "klipper-skew": "klipper:KlipperSkew",
+        "lddm": "lddm:Lddm",
+        "linuxcnc-comp": "linuxcnc_comp:LinuxCncComp",
+        "renishaw-rtl": "renishaw_rtl:RenishawRtl",
+        "siemens-cec": "siemens_cec:SiemensCec",
+        "siemens-eec": "siemens_eec:SiemensEec",
+        "xyz": "xyz:Xyz",
+    }
+    return _later("formats", places)
 
 
 @gx.hookimpl
-def gcxform_kinematics() -> list[type[gx.Kinematics]]:
+def gcxform_kinematics() -> list[gx.Later]:
     """Return the kinds of machines that files can name."""
-    from gcxform_plugins.kinematics.forks import CaFork, CbFork
-    from gcxform_plugins.kinematics.mixed import ATableBHead, CTableAHead, CTableBHead
-    from gcxform_plugins.kinematics.nutating import ATableNutatingHead, NutatingHead, NutatingTable
-    from gcxform_plugins.kinematics.single import ATable, BTable, CTable
-    from gcxform_plugins.kinematics.trunnions import AbTrunnion, AcTrunnion, BaTrunnion, BcTrunnion
-
-    return [
-        AcTrunnion,
-        BcTrunnion,
-        AbTrunnion,
-        BaTrunnion,
-        CaFork,
-        CbFork,
-        CTableBHead,
-        CTableAHead,
-        ATableBHead,
-        NutatingHead,
-        NutatingTable,
-        ATableNutatingHead,
-        ATable,
-        BTable,
-        CTable,
-    ]
+    places = {
+        "ac-trunnion": "trunnions:AcTrunnion",
+        "bc-trunnion": "trunnions:BcTrunnion",
+        "ab-trunnion": "trunnions:AbTrunnion",
+        "ba-trunnion": "trunnions:BaTrunnion",
+        "ca-fork": "forks:CaFork",
+        "cb-fork": "forks:CbFork",
+        "c-table-b-head": "mixed:CTableBHead",
+        "c-table-a-head": "mixed:CTableAHead",
+        "a-table-b-head": "mixed:ATableBHead",
+        "nutating-head": "nutating:NutatingHead",
+        "nutating-table": "nutating:NutatingTable",
+        "a-table-nutating-head": "nutating:ATableNutatingHead",
+        "a-table": "single:ATable",
+        "b-table": "single:BTable",
+        "c-table": "single:CTable",
+    }
+    return _later("kinematics", places)
 
 
 @gx.hookimpl
-def gcxform_machine_presets() -> list[type[gx.MachinePreset]]:
+def gcxform_machine_presets() -> list[gx.Later]:
     """Return the machines that files can be like."""
-    from gcxform_plugins.presets import smithy
-    from gcxform_plugins.presets.tormach import Pcnc770, Pcnc1100
-
-    mills = [smithy.Mill1240, smithy.Mill622]
-    return [Pcnc770, Pcnc1100, *mills, smithy.Gecko1240, smithy.Gecko622, smithy.Gecko1034]
+    places = {
+        "tormach-pcnc-770": "tormach:Pcnc770",
+        "tormach-pcnc-1100-series-ii": "tormach:Pcnc1100",
+        "smithy-1240": "smithy:Mill1240",
+        "smithy-622": "smithy:Mill622",
+        "smithy-1240-gecko": "smithy:Gecko1240",
+        "smithy-622-gecko": "smithy:Gecko622",
+        "smithy-1034-gecko": "smithy:Gecko1034",
+    }
+    return _later("presets", places)
 
 
 @gx.hookimpl
-def gcxform_control_files() -> list[type[gx.ControlFiles]]:
+def gcxform_control_files() -> list[gx.Later]:
     """Return the controls whose kinematics and tool tables are read."""
-    from gcxform_plugins.controls.fanuc import FanucFiles
-    from gcxform_plugins.controls.linuxcnc.control import LinuxCncFiles
-    from gcxform_plugins.controls.siemens import SiemensFiles
-
-    return [FanucFiles, LinuxCncFiles, SiemensFiles]
+    places = {
+        "fanuc": "fanuc:FanucFiles",
+        "linuxcnc": "linuxcnc.control:LinuxCncFiles",
+        "siemens": "siemens:SiemensFiles",
+    }
+    return _later("controls", places)

@@ -60,5 +60,5 @@ def built(target: type[Built], given: Mapping[str, Any], owner: str) -> Built:
         for name, value in given.items()
         if value is not None
     }
-    formats = default_registry("format").formats.values()
+    formats = default_registry().formats.values()
     return build(target, raw, Path.cwd(), formats, lambda key: Location(f"--{key}"), owner)
