@@ -4,6 +4,9 @@ What that state is `[entry]` says; what it does not say is unknown. What is writ
 state that the source leaves, so modes that the passes have changed are stated again before the
 return. Where what is written would depend on what is not known the file is kept, byte for byte, if
 no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
+
+A pass that does turn them keeps what moves nothing. Errors are those of a place, so all else is for
+the run of the program that calls it, from wherever that does.
 """
 
 from __future__ import annotations
@@ -16,7 +19,9 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location, Severity
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.detection import aliases
 from gcxform.flow.straightened import located
+from gcxform.flow.subprogram_file import moves_nothing
 from gcxform.flow.uncalled_subprograms import HINT
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
 from gcxform.modal.reader import windows_of
@@ -57,17 +62,24 @@ def run_subprogram(
     progress: Progress,
 ) -> Certificate:
     """Run a plan on a file that is a subprogram by itself. Raises GcxformError."""
-    if plan.marks(source).changes or any(step.demands.folds for step in plan.path_passes):
-        message = "this file is a subprogram: where its caller stands is not known here"
-        raise InputError.one("GX226", message, hint=HINT)
+    folds = any(step.demands.folds for step in plan.path_passes)
     held, again = Held(), "on" if verify == "off" else verify
-    try:
-        done = _entered(plan, source, again, held)
-    except InputError as why:
-        if plan.source is not plan.target or why.diagnostics[0].code < LAST_OF_TEXT:
-            raise
-        held = Held()
-        done = _kept(plan, source, verify, held, why.diagnostics[0])
+    if plan.marks(source).changes or folds:
+        calling = aliases(plan.machine_reading.control)
+        kept = plan.source is plan.target and moves_nothing(source, plan.source, calling)
+        if folds or not kept:
+            message = "this file is a subprogram: where its caller stands is not known here"
+            raise InputError.one("GX226", message, hint=HINT)
+        done = certificate(*_run_of_text(plan, source, verify, held))
+        done.assumed.append("this is a subprogram in which nothing moves: kept as it stands")
+    else:
+        try:
+            done = _entered(plan, source, again, held)
+        except InputError as why:
+            if plan.source is not plan.target or why.diagnostics[0].code < LAST_OF_TEXT:
+                raise
+            held = Held()
+            done = _kept(plan, source, verify, held, why.diagnostics[0])
     if source_map is not None:
         source_map += held.lines
     for part in held.parts:
