@@ -14,7 +14,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | blend, without the tolerance that it has there | nothing: without one it would have no bound |
 | look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
 | no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
-| G28, to a point of another kind there | G53 to the point, where that is known |
+| G28, to a point of another kind there, or letting go of the tool length | G53 to the point |
 | a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
 | a comment that shows or logs something | a comment |
 """
@@ -154,9 +154,14 @@ class Saying:
             self._named(VECTOR)
         )
 
-    def moves_home(self, what: str, bare: bool) -> bool:
-        """Whether a way home of the source, of all axes if `bare`, is G53 in the target."""
-        unknown = bare and self.crosses and not self.target.motion_rule.g28_without_axes
+    def moves_home(self, what: str, bare: bool, called: bool) -> bool:
+        """Whether a way home of the source is G53 in the target.
+
+        `bare`: it is one of all axes; `called`: a tool length is in force.
+        """
+        here, there = self.source.motion_rule, self.target.motion_rule
+        unknown = bare and self.crosses and not there.g28_without_axes
+        unknown |= called and there.g28_ends_length and not here.g28_ends_length
         return self.instead(what) not in (what, "") or (unknown and bool(self.machine))
 
     def _same_home(self, what: str) -> bool:

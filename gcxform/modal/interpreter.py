@@ -26,12 +26,11 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
-from gcxform.modal.noted import Assigned, Unknown
+from gcxform.modal.noted import Assigned, Unknown, WayHome
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Toolpath
 from gcxform.values import dataclass
 
@@ -46,8 +45,7 @@ class Interpreted:
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
     0, that set where something counts from, and the state of the frames behind each. `homed` are
-    lines that only go to a point of the machine which is known: its code, the machine's frame, and
-    whether they name no axis.
+    lines that only go to a point of the machine which is known.
     `lengths` are the lines that put a tool length in force, and its vector, mm.
     """
 
@@ -62,7 +60,7 @@ class Interpreted:
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
-    homed: Mapping[int, tuple[str, Frame, bool]] = field(default_factory=dict)
+    homed: Mapping[int, WayHome] = field(default_factory=dict)
     lengths: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
 
 

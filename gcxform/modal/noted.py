@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from gcxform.dialect.arithmetic import Key
+from gcxform.toolpath.frames import Frame
 
 
 class Assigned(NamedTuple):
@@ -32,6 +33,26 @@ class Unknown(NamedTuple):
     text: str
     hangs_on: str
     rounded: bool = False
+
+
+class WayHome(NamedTuple):
+    """A line that only goes to a point of the machine which is known.
+
+    code    the code that it is said by
+    frame   the frame of the machine
+    bare    whether it names no axis
+    called  whether a tool length is in force, or may be
+    """
+
+    code: str
+    frame: Frame
+    bare: bool
+    called: bool
+
+    @property
+    def asked(self) -> tuple[str, bool, bool]:
+        """What `Saying.moves_home` is asked about it."""
+        return self.code, self.bare, self.called
 
 
 class KeptCall(NamedTuple):

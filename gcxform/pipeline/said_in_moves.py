@@ -38,8 +38,7 @@ def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> T
 def _homed(plan: Plan, read: Interpreted) -> Toolpath:
     """Return a path in which ways home are moves in the machine, by absolute words."""
     path, saying = read.path, plan.saying
-    found = read.homed.items()
-    frames = {n: frame for n, (code, frame, bare) in found if saying.moves_home(code, bare)}
+    frames = {n: to.frame for n, to in read.homed.items() if saying.moves_home(*to.asked)}
     if not frames:
         return path
     lines = np.array(list(frames))

@@ -13,6 +13,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.saying import HOME
@@ -60,8 +62,9 @@ class EventProof:
         saying = self.context.saying
         code = self.context.source.codes.get(event.what)
         if code is not None and code.act == HOME:
-            bare = int((path.source == event.line).sum()) == 1
-            moves = saying.moves_home(event.what, bare)
+            rows = np.flatnonzero(path.source == event.line)
+            called = path.frames[path.frame[rows[0]]].called
+            moves = saying.moves_home(event.what, len(rows) == 1, called)
             return replace(event, what=saying.machine, values=()) if moves else event
         words = saying.words_of(event.what, "".join(address for address, _ in event.values))
         said = saying.instead(event.what)

@@ -10,7 +10,7 @@ is the same text.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from hashlib import sha256
 from math import isnan
@@ -26,7 +26,7 @@ from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import KINDS, Account, Tally, kind_of, nothing_held
 from gcxform.modal.meaning.tables import MeaningTable
-from gcxform.modal.noted import Assigned
+from gcxform.modal.noted import Assigned, WayHome
 from gcxform.modal.program_end import Ending
 from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines
@@ -213,20 +213,24 @@ class Books:
             self.set_aside += sum(not _lasts(each.key, self.context) for each in read.assigned)
         self.text_behind.update(behind_end(window, read.live))
         events = read.path.events
-        self._say(events, [each.text for each in read.unknown])
+        ways = {n + window.first_line: to for n, to in read.homed.items()}
+        self._say(events, [each.text for each in read.unknown], ways)
         self.done += sum(event.what in self.switches for event in events)
         self.given += given
         self.inner += given + sum(event.within for event in events)
         self.assigned += [(each.key, each.value) for each in read.assigned]
 
-    def _say(self, events: Sequence[Event], unknown: Sequence[str]) -> None:
-        """Take note of what the target says otherwise, or not at all.
+    def _say(
+        self, events: Sequence[Event], unknown: Sequence[str], ways: Mapping[int, WayHome]
+    ) -> None:
+        """Take note of what the target says otherwise, or not at all; `ways` are home, by line.
 
         What only the machine can compute, `unknown`, is an event besides that of its block.
         """
         saying = self.context.saying
         if saying.crosses or saying.drop or saying.m_codes:
-            self.said += Counter(each for each in map(self._named, events) if each[0] != each[1])
+            named = [self._named(event, ways.get(event.line)) for event in events]
+            self.said += Counter(each for each in named if each[0] != each[1])
             told = [text for text in unknown if text[0] in "(;" and not saying.instead(text)]
             self.said -= Counter({(MESSAGE, ""): len(told)})
 
@@ -239,9 +243,11 @@ class Books:
             for (what, said), count in self.said.items()
         ]
 
-    def _named(self, event: Event) -> tuple[str, str]:
+    def _named(self, event: Event, way: WayHome | None) -> tuple[str, str]:
         """Return an event of the source with its words, and what stands for it."""
         saying = self.context.saying
+        if way is not None and way.code == event.what and saying.moves_home(*way.asked):
+            return event.what, saying.machine
         if event.what[0] in "(;":
             return MESSAGE, saying.instead(event.what) and MESSAGE
         taken = "".join(address for address, _ in event.values)

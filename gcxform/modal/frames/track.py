@@ -25,6 +25,7 @@ from gcxform.modal.frames.acts import ACTS, unheard
 from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
+from gcxform.modal.noted import WayHome
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
@@ -79,7 +80,7 @@ class Track:
             self.frames.insert(0, self.state.row_frame)
         self.breaks: list[Break] = []
         self.zeroed: list[tuple[int, FrameState]] = []
-        self.homed: dict[int, tuple[str, Frame, bool]] = {}
+        self.homed: dict[int, WayHome] = {}
         self.lengths: dict[int, tuple[float, float, float]] = {}
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)

@@ -15,7 +15,7 @@ from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Own
 from gcxform.modal.moves.spindle_and_probe import probe
-from gcxform.modal.noted import AT
+from gcxform.modal.noted import AT, WayHome
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
@@ -112,7 +112,7 @@ def _note_machine(
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
     frame = Frame(frames.work, shift, (frames.first,) * len(track.axes))
-    track.homed[line] = code.split()[0], frame, not words
+    track.homed[line] = WayHome(code.split()[0], frame, not words, track.frame.called)
 
 
 def _let_go_of_length(track: Track, line: int, code: str) -> None:
