@@ -189,6 +189,8 @@ WAYS_HOME = [
     ("haas", "linuxcnc", "G28", ["G0 G53 X10. Y20. Z450."]),
     ("haas", "grbl", "G91 G28 Z0.\nG90 G1 Z0. F100.", ["G90 G53 Z450.", "G90 G1 Z0. F100."]),
     ("grbl", "fanuc", "G91 G28 Z0.\nG0 X1.", ["G90 G53 Z450.", "G91 G0 X1."]),
+    ("fanuc", "haas", "G43 H1 G0 Z5.\nG91 G28 Z0.", ["G43 H1 G0 Z5.", "G90 G53 Z450."]),
+    ("haas", "fanuc", "G43 H1 G0 Z5.\nG91 G28 Z0.", ["G43 H1 G0 Z5.", "G91 G28 Z0."]),
 ]
 
 
@@ -199,6 +201,26 @@ def test_ways_home_are_moves_in_the_machine(source, target, blocks, expected):
     result = pipeline.run(f"{HEAD}{start}{blocks}\nM2\n".encode())
     lines = result.text.decode().split("\n")[1 + bool(start) : -2]
     assert lines == expected
+
+
+@pytest.mark.parametrize("block", ["G28", "G91 G28 X0. Y0. Z0."])
+def test_the_certificate_lists_a_way_home_that_is_said_otherwise(block):
+    pipeline = gx.Pipeline(DIALECTS["haas"], DIALECTS["linuxcnc"], (), MACHINE)
+    certificate = pipeline.run(f"{HEAD}{block}\nM30\n".encode()).certificate
+    assert "G28 is said as G53 for linuxcnc: 1" in certificate.assumed
+
+
+SIDE = "G0 X-20. Y0. Z5.\nG41 D1 G1 X0. F100.\nX10.\nY10.\n{}\nG91 G28 Z0.\nG90 G0 X0. Y0."
+
+
+def test_a_way_home_behind_a_contour_that_a_step_resolves():
+    step = default_registry().passes["cutter-comp"](corners="arc", entry="own")
+    reading = replace(MACHINE, tools={1: Tool(length=50.0, radius=3.0)})
+    pipeline = gx.Pipeline(DIALECTS["fanuc"], DIALECTS["linuxcnc"], (step,), reading)
+    result = pipeline.run(f"{HEAD}{SIDE.format('G40 X30.')}\nM30\n".encode())
+    assert b"\nG0 G90 G53 Z450.\n" in result.text
+    with pytest.raises(gx.GcxformError, match="of its own kind"):
+        pipeline.run(f"{HEAD}{SIDE.format('G40')}\nM30\n".encode())
 
 
 @pytest.mark.parametrize(

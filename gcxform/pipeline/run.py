@@ -345,15 +345,18 @@ class Run:
         window = self.reader.take_over(apart)
         table = self.reader.table
         read = self.stages.interpreter.interpret(window, table)
-        meant = read.path
-        path = said_in_moves(self.plan, read, window, self.source.name)
-        for number, step in enumerate(self.steps):
+        path = meant = read.path
+        means = resolved(self.steps)
+        path = path if means else said_in_moves(self.plan, read, path, window, self.source.name)
+        for number, step in enumerate(self.steps, 1):
             path = self._apply(step, self._held(number, path), window)
             if len(path):
                 self.held[number] = path.end[-1].copy()
             if step.demands.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
+            if number == means:
+                path = said_in_moves(self.plan, read, path, window, self.source.name)
         with placing(window, self.source.name):
             check_mixed(read.path, path, self.plan.context)
         return Transformed(window, table, read, meant, in_words_of(self.plan.target, path))

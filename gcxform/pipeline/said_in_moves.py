@@ -20,12 +20,14 @@ from gcxform.toolpath.cycles_as_moves import cycles_as_moves
 from gcxform.toolpath.path import Form, Toolpath
 
 
-def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> Toolpath:
+def said_in_moves(
+    plan: Plan, read: Interpreted, path: Toolpath, window: Window, file: str
+) -> Toolpath:
     """Return the path of a window, in which such blocks are plain moves. Raises InputError.
 
     Cycles stay, to be refused by who writes, where a step proves its path by what it was given.
     """
-    path, foreign = _homed(plan, read), plan.manner.foreign_cycles
+    path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
     resolves = any(step.demands.resolves for step in plan.path_passes)
     whole = compensates_cycles(plan.path_passes)
     if resolves or not (foreign or whole) or not (path.form == Form.CYCLE).any():
@@ -35,9 +37,9 @@ def said_in_moves(plan: Plan, read: Interpreted, window: Window, file: str) -> T
         return cycles_as_moves(path, None if whole else here)
 
 
-def _homed(plan: Plan, read: Interpreted) -> Toolpath:
+def _homed(plan: Plan, read: Interpreted, path: Toolpath) -> Toolpath:
     """Return a path in which ways home are moves in the machine, by absolute words."""
-    path, saying = read.path, plan.saying
+    saying = plan.saying
     frames = {n: to.frame for n, to in read.homed.items() if saying.moves_home(*to.asked)}
     if not frames:
         return path

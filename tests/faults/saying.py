@@ -81,6 +81,27 @@ MUTATIONS = (
         HERE,
     ),
     Mutation(
+        "saying: a way home that lets go of the length there stays one",
+        "gcxform/dialect/saying.py",
+        "unknown |= called and there.g28_ends_length and not here.g28_ends_length",
+        "unknown |= False",
+        HERE,
+    ),
+    Mutation(
+        "saying: ways home are moves before a step resolves compensation",
+        "gcxform/pipeline/run.py",
+        "path = path if means else said_in_moves(",
+        "path = said_in_moves(",
+        HERE,
+    ),
+    Mutation(
+        "saying: a bare way home is not listed",
+        "gcxform/proof/inventory.py",
+        "if way is not None and way.code == event.what and saying.moves_home(*way.asked):",
+        "if False:",
+        HERE,
+    ),
+    Mutation(
         "saying: a way home is said in distances",
         "gcxform/pipeline/said_in_moves.py",
         "incremental[lines] = False",
