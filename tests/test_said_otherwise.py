@@ -203,11 +203,13 @@ def test_ways_home_are_moves_in_the_machine(source, target, blocks, expected):
     assert lines == expected
 
 
-@pytest.mark.parametrize("block", ["G28", "G91 G28 X0. Y0. Z0."])
-def test_the_certificate_lists_a_way_home_that_is_said_otherwise(block):
-    pipeline = gx.Pipeline(DIALECTS["haas"], DIALECTS["linuxcnc"], (), MACHINE)
+@pytest.mark.parametrize(
+    ("target", "block"), [("fanuc", "G28"), ("linuxcnc", "G91 G28 X0. Y0. Z0.")]
+)
+def test_the_certificate_lists_a_way_home_that_is_said_otherwise(target, block):
+    pipeline = gx.Pipeline(DIALECTS["haas"], DIALECTS[target], (), MACHINE)
     certificate = pipeline.run(f"{HEAD}{block}\nM30\n".encode()).certificate
-    assert "G28 is said as G53 for linuxcnc: 1" in certificate.assumed
+    assert f"G28 is said as G53 for {target}: 1" in certificate.assumed
 
 
 SIDE = "G0 X-20. Y0. Z5.\nG41 D1 G1 X0. F100.\nX10.\nY10.\n{}\nG91 G28 Z0.\nG90 G0 X0. Y0."

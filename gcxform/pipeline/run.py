@@ -343,11 +343,9 @@ class Run:
         """Interpret one window and run the passes."""
         assert self.stages is not None
         window = self.reader.take_over(apart)
-        table = self.reader.table
-        read = self.stages.interpreter.interpret(window, table)
-        path = meant = read.path
-        means = resolved(self.steps)
-        path = path if means else said_in_moves(self.plan, read, path, window, self.source.name)
+        read = self.stages.interpreter.interpret(window, table := self.reader.table)
+        meant, name = read.path, self.source.name
+        path = said_in_moves(self.plan, 0, read, read.path, window, name)
         for number, step in enumerate(self.steps, 1):
             path = self._apply(step, self._held(number, path), window)
             if len(path):
@@ -355,9 +353,8 @@ class Run:
             if step.demands.resolves:
                 self._prove(step, meant, path, window)
                 meant = path
-            if number == means:
-                path = said_in_moves(self.plan, read, path, window, self.source.name)
-        with placing(window, self.source.name):
+            path = said_in_moves(self.plan, number, read, path, window, name)
+        with placing(window, name):
             check_mixed(read.path, path, self.plan.context)
         return Transformed(window, table, read, meant, in_words_of(self.plan.target, path))
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from gcxform.contract.passes import resolved
 from gcxform.modal.interpreter import Interpreted
 from gcxform.pipeline.chain import compensates_cycles
 from gcxform.pipeline.placing import placing
@@ -21,14 +22,17 @@ from gcxform.toolpath.path import Form, Toolpath
 
 
 def said_in_moves(
-    plan: Plan, read: Interpreted, path: Toolpath, window: Window, file: str
+    plan: Plan, done: int, read: Interpreted, path: Toolpath, window: Window, file: str
 ) -> Toolpath:
     """Return the path of a window, in which such blocks are plain moves. Raises InputError.
 
-    Cycles stay, to be refused by who writes, where a step proves its path by what it was given.
+    They become so behind the last of the steps that prove their paths by what they were given;
+    `done` is how many have been run. With such a step cycles stay, to be refused by who writes.
     """
+    resolves = resolved(plan.path_passes)
+    if done != resolves:
+        return path
     path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
-    resolves = any(step.demands.resolves for step in plan.path_passes)
     whole = compensates_cycles(plan.path_passes)
     if resolves or not (foreign or whole) or not (path.form == Form.CYCLE).any():
         return path

@@ -89,9 +89,9 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: ways home are moves before a step resolves compensation",
-        "gcxform/pipeline/run.py",
-        "path = path if means else said_in_moves(",
-        "path = said_in_moves(",
+        "gcxform/pipeline/said_in_moves.py",
+        "    if done != resolves:",
+        "    if done:",
         HERE,
     ),
     Mutation(
