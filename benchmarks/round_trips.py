@@ -1,11 +1,14 @@
 """Write every real program without macros in another language and back, and compare all three.
 
     python benchmarks/round_trips.py [CORPUS] [--to NAME] [--from NAME] [--list] [--keep FOLDER]
+                                     [--bare]
 
 The programs are those of `corpus.py`, with the machines that it gives them. What counts is a
 program without macros that goes through `absolute` in its own dialect, and is no file of a
 subprogram. *Round* is one that is proved on both ways, and whose three programs `compare` the same
 within what rounding does; codes that both certificates list as said otherwise are not compared.
+Both ways take what hints offer: a pass, a code to be left out, and that a tool change moves no axis
+(`--bare` takes nothing).
 """
 
 from __future__ import annotations
@@ -19,12 +22,16 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+from translation import WAYS, offered, taken
+from translation import said as step_name
+
 import gcxform as gx
 from corpus import BESIDE, HERE, NUMBERS, Job, Outcome, counted, filled_in
 from corpus import run as run_in_own
+from gcxform.contract.inert_codes import with_inert
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain_text import parse_chain
-from gcxform.pipeline.pipeline import Result
+from gcxform.pipeline.pipeline import Pipeline, Result
 from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Toolpath
 
@@ -36,6 +43,8 @@ ENDS = {"M2", "M30", "G80", "G98", "G99", "G43", "G49", "G54"}
 """What a language need not say: the end of a file, cycles that are moves, lengths with tools."""
 LONGEST = 200_000  # bytes
 SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|said as|a comment)")
+OUTPUT = ("drop", "inert")
+"""What a user gives of the output where a hint offers it."""
 TOLERANCE = 0.002  # mm: twice what a program is rounded by
 
 
@@ -45,10 +54,10 @@ def plain(job: Job) -> bool:
     return job.chain == "absolute" and len(bare) < LONGEST and not MACRO.search(bare)
 
 
-def round_trip(job: Job, target: str, keep: Path | None = None) -> Outcome:
-    """Write a program in a language and back."""
+def round_trip(job: Job, target: str, keep: Path | None = None, bare: bool = False) -> Outcome:
+    """Write a program in a language and back; `bare`: without what hints offer."""
     try:
-        return _round_trip(job, target, keep)
+        return _round_trip(job, target, keep, 0 if bare else WAYS)
     except gx.GcxformError as error:
         first = error.diagnostics[0]
         return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
@@ -56,16 +65,18 @@ def round_trip(job: Job, target: str, keep: Path | None = None) -> Outcome:
         return Outcome(job, "CRASH", repr(error))
 
 
-def _round_trip(job: Job, target: str, keep: Path | None) -> Outcome:
+def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
     registry = default_registry()
     there, chain = registry.dialect(target), parse_chain("absolute", HERE, registry)
     made = filled_in(job.dialect, job.path, "absolute", job.corpus)
-    said = replace(made, target=there, passes=(), numbers=NUMBERS).run(job.corpus / job.path)
+    reading = made.machine_reading
+    way = replace(made, target=there, passes=(), numbers=NUMBERS)
+    way, said = by_hints(way, job.corpus / job.path, ways)
+    there = with_inert(there, way.inert)
     if keep is not None:
         (keep / job.path.replace("/", "__")).write_bytes(said.text)
-    reading = made.machine_reading
     anew = replace(made, source=there, passes=tuple(chain), numbers=NUMBERS)
-    back = replace(anew, reading=_bare(made.reading)).run(said.text)
+    _, back = by_hints(replace(anew, reading=_bare(reading)), said.text, ways)
     programs = [
         gx.Program(text, kind, reading if kind is made.source else _bare(reading))
         for text, kind in ((job.text, made.source), (said.text, there), (back.text, made.source))
@@ -76,9 +87,27 @@ def _round_trip(job: Job, target: str, keep: Path | None) -> Outcome:
     return Outcome(job)
 
 
+def by_hints(made: Pipeline, program: Path | bytes, ways: int) -> tuple[Pipeline, Result]:
+    """Run a pipeline, up to so many times with what its hints offer. Raises GcxformError."""
+    added = list[str]()
+    while True:
+        try:
+            return made, made.run(program)
+        except gx.GcxformError as error:
+            step = offered(error.diagnostics[0].hint, added, OUTPUT)
+            if step is None or len(added) == ways:
+                raise
+            made = taken(made, step)
+            added.append(step_name(step))
+
+
 def _bare(reading: Reading) -> Reading:
-    """Return what is known of the machine, without what holds for the language of the source."""
-    return Reading(reading.start, tools=reading.tools, crosses=reading.crosses)
+    """Return what is known of the machine, without what holds for the language of the source.
+
+    The zero that is said by nothing is the same everywhere.
+    """
+    zeros = {code: zero for code, zero in reading.work_offsets.items() if code == "G54"}
+    return Reading(reading.start, work_offsets=zeros, tools=reading.tools, crosses=reading.crosses)
 
 
 def told(*results: Result) -> set[str]:
@@ -101,6 +130,8 @@ def apart(one: gx.Program, other: gx.Program, but: set[str]) -> str:
 def _without(path: Toolpath, but: set[str]) -> Toolpath:
     """Return a path without events that are said otherwise."""
     events = [e for e in path.events if e.what.split(" ")[0].lstrip("/") not in but | ENDS]
+    sides = ("G41", "G42")  # with the tool in the spindle where no D is said: radii are compared
+    events = [replace(e, values=()) if e.what in sides else e for e in events]
     if "(...)" in but:
         events = [e for e in events if not e.what.startswith("(")]
     return replace(path, events=tuple(events))
@@ -118,13 +149,15 @@ def main() -> int:
     parser.add_argument("--to", choices=TARGETS, default=TARGETS[0])
     parser.add_argument("--from", dest="source", choices=SOURCES, action="append")
     parser.add_argument("--list", action="store_true", help="one line per program")
+    parser.add_argument("--bare", action="store_true", help="take nothing that hints offer")
     parser.add_argument("--keep", type=Path, help="write what is in the language into a folder")
     options = parser.parse_args()
     with ProcessPoolExecutor(2) as pool:
         jobs = [*counted(options.corpus, options.source or SOURCES)]
         jobs = [job for job, good in zip(jobs, pool.map(counts, jobs), strict=True) if good]
         to = [options.to] * len(jobs)
-        found = [*pool.map(round_trip, jobs, to, [options.keep] * len(jobs))]
+        how = [options.keep] * len(jobs), [options.bare] * len(jobs)
+        found = [*pool.map(round_trip, jobs, to, *how)]
     found = [one for one in found if one.code != "GX226"]
     for one in found:
         if options.list:

@@ -23,7 +23,7 @@ import sys
 import tempfile
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
@@ -134,11 +134,16 @@ def translate(pair: Pair, keep: Path | None = None) -> Found:
     return Found(refused, tuple(added))
 
 
-def offered(hint: str, added: list[str]) -> StepBefore | Setting | None:
-    """Return the first offer of a hint that a user can take who knows the target alone."""
+def offered(
+    hint: str, added: Sequence[str], keys: Collection[str] = ("drop",)
+) -> StepBefore | Setting | None:
+    """Return the first offer of a hint that a user can take who knows the target alone.
+
+    `keys` are those of the output that this user gives.
+    """
     for offer in offers(hint):
-        drops = isinstance(offer, Setting) and (offer.section, offer.key) == ("output", "drop")
-        if (drops or isinstance(offer, StepBefore)) and said(offer) not in added:
+        gives = isinstance(offer, Setting) and offer.section == "output" and offer.key in keys
+        if (gives or isinstance(offer, StepBefore)) and said(offer) not in added:
             return offer
     return None
 
@@ -146,14 +151,15 @@ def offered(hint: str, added: list[str]) -> StepBefore | Setting | None:
 def said(offer: StepBefore | Setting) -> str:
     """Return an offer in words."""
     if isinstance(offer, Setting):
-        return f"drop {' '.join(offer.worth())}"
+        return f"{offer.key} {' '.join(offer.worth())}"
     return f"{offer.name} {offer.options}".strip()
 
 
 def taken(pipeline: Pipeline, offer: StepBefore | Setting) -> Pipeline:
     """Return a pipeline with what a hint offers."""
     if isinstance(offer, Setting):
-        return replace(pipeline, drop=pipeline.drop | frozenset(offer.worth()))
+        codes = getattr(pipeline, offer.key) | frozenset(offer.worth())
+        return replace(pipeline, **{offer.key: codes})
     steps = parse_chain(said(offer), BESIDE, default_registry())
     rest = [step.name for step in pipeline.passes]
     at = rest.index(offer.step) if offer.step in rest else 0

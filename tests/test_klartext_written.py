@@ -269,7 +269,7 @@ def test_words_become_klartext_in_its_idiom_and_words_again():
 @pytest.mark.parametrize(
     ("block", "why"),
     [
-        ("G18 G2 X5. Z5. I5. K0.", "out of XY"),
+        ("G18 G2 X5. Y1. Z5. I5. K0.", "out of XY"),
         ("G20 G0 X5.", "one unit"),
         ("G43 H2 Z5.", "another tool"),
         ("G93 G1 X5. F2.", "G93"),

@@ -19,14 +19,21 @@ HINT = "let a pass write it in another way, or write for another dialect"
 
 
 def spelled_out(
-    blocks: Sequence[bytes], source: Sequence[int], kind: type[Speller], file: str, inch: bool
+    blocks: Sequence[bytes],
+    source: Sequence[int],
+    kind: type[Speller],
+    file: str,
+    inch: bool,
+    inert: frozenset[str] = frozenset(),
 ) -> tuple[bytes, list[int], Counter[str]]:
     """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
-    `source` are lines of the program, from 0, of which the blocks are. Raises InputError for a
+    `source` are lines of the program, from 0, of which the blocks are. `inert` are M codes of the
+    target that leave its axes where they stand. Raises InputError for a
     block that cannot be said.
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
+    speller.inert = inert
     lines, of = speller.opening(), [source[0] if source else 0]
     of *= len(lines)
     for block, line in zip(blocks, source, strict=True):
@@ -35,7 +42,7 @@ def spelled_out(
             said = speller.lines(text)
         except UnspeakableError as why:
             where = Location(file, line + 1, 1, text, max(1, len(text)))
-            raise InputError((Diagnostic("GX501", str(why), where, HINT),)) from None
+            raise InputError((Diagnostic("GX501", str(why), where, why.hint or HINT),)) from None
         lines += said
         of += [line] * len(said)
     ends = speller.closing()

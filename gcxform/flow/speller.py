@@ -13,7 +13,11 @@ BLANKS = str.maketrans("", "", " \t")
 
 
 class UnspeakableError(Exception):
-    """A block for which a language has no words; the sentence says why."""
+    """A block for which a language has no words; the sentence says why, the hint what to do."""
+
+    def __init__(self, why: str, hint: str = "") -> None:
+        super().__init__(why)
+        self.hint = hint
 
 
 class Speller(ABC):
@@ -22,8 +26,10 @@ class Speller(ABC):
     Whatever comes out is read again by the grammar of the language, and has to be the same program.
 
     `comment` begins a line that says nothing to the control, wherever one may stand behind the end
-    of a program; nothing where none may.
+    of a program; nothing where none may. `inert` are M codes that leave the axes where they stand.
     """
+
+    inert: frozenset[str] = frozenset()
 
     comment: ClassVar[str] = ""
 

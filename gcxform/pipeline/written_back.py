@@ -98,7 +98,9 @@ class SpelledOut:
         blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
-        text, of, left_out = spelled_out(blocks, lines, self.kind, self.given.name, inch)
+        text, of, left_out = spelled_out(
+            blocks, lines, self.kind, self.given.name, inch, self.plan.inert
+        )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())

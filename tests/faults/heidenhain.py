@@ -26,7 +26,52 @@ WRITTEN = "tests/test_klartext_written.py"
 READ = f"{TESTS}::test_it_is_read_as_by_a_reader_of_one_line_at_a_time"
 REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 
+TARGET = "tests/test_klartext_target.py"
+PLANES = f"{TARGET}::test_arcs_of_other_planes_are_circles_about_a_centre_there"
+
 MUTATIONS = (
+    Mutation(
+        "klartext: DR+ in Z and X turns from X towards Z",
+        MOVES,
+        '"ZX": "G18", "YZ": "G19"}',
+        '"ZX": "G19", "YZ": "G18"}',
+        "tests/test_corpus.py::test_case[dialects/heidenhain-circle-zx]",
+    ),
+    Mutation(
+        "klartext: one coordinate is enough for a circle out of XY",
+        MOVES,
+        "self.following or len(ends) < 2)",
+        "self.following)",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-circle-zx-open]",
+    ),
+    Mutation(
+        "klartext: arcs stay in the plane of the one before",
+        WORDS,
+        "        self.plane = code\n        return f",
+        "        return f",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-circle-zx]",
+    ),
+    Mutation(
+        "klartext: a written arc by its radius is on the other side",
+        LINES,
+        "aside *= 1 if (radius > 0) ==",
+        "aside *= 1 if (radius > 0) !=",
+        PLANES,
+    ),
+    Mutation(
+        "klartext: a side that is said alone is forgotten",
+        LINES,
+        "self._side(codes, values) or self.waits",
+        "self._side(codes, values) or self.side",
+        f"{TARGET}::test_a_side_that_is_said_alone_is_that_of_the_next_line",
+    ),
+    Mutation(
+        "klartext: any side of the contour is as good as another",
+        SPELLED,
+        "    return side and not one[2] and one[:2] == other[:2]",
+        "    return side and not one[2]",
+        f"{TARGET}::test_a_side_is_compared_by_its_code",
+    ),
     Mutation(
         "klartext: values may be too large on the way",
         PARAMETERS,
@@ -457,8 +502,8 @@ MUTATIONS = (
     Mutation(
         "klartext: places are known behind a tool change",
         PROGRAM,
-        "        tool = self.in_spindle = self.tool\n        self.lose()",
-        "        tool = self.in_spindle = self.tool",
+        "        if self.dialect.m_codes[6].loses_position:",
+        "        if False:",
         REFUSED,
     ),
     Mutation(

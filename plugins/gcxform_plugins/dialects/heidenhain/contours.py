@@ -80,7 +80,11 @@ class Contours(Moves):
             by = (c - f for c, f in zip(corner.centre, corner.first, strict=True))
             words += "".join(f" {a}{written(d)}" for a, d in zip("IJ", by, strict=True))
         self.begins, self.pole = corner.second, {}
-        block = f"{self.moving(corner.code)}{words}{said.feed}".lstrip()
+        if corner.centre is not None:
+            words = f"{self.in_plane('G17')}{self.moving(corner.code)}{words}"
+        else:
+            words = f"{self.moving(corner.code)}{words}"
+        block = f"{words}{said.feed}".lstrip()
         if not said.feed:
             return [block]
         self.feed = old

@@ -16,7 +16,10 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | DR+ | counter-clockwise, from X to Y | iTNC 530, p. 207 |
 | CP | IPA is the whole angle, of many turns in a helix; its sign is that of DR | TNC 430, p. 153 |
 | polar angles | from +X towards +Y | TNC 310 Pilot, p. 8 |
-| arcs outside XY, helices by C | refused: helices are polar only | TNC 430, p. 153 |
+| helices by C | refused: helices are polar only | TNC 430, p. 153 |
+| CC and C in Z and X, or Y and Z | the circle is there, with any tool axis | iTNC 530, p. 222 |
+| DR+ there | from Z towards X, from Y towards Z | TNC 310 Pilot, p. 8 |
+| such circles by CR, CP, CT, with one coordinate, under RL or M128 | refused | |
 | RL, RR | the contour, as G41 and G42: `cutter-comp` must be told corners and entry | 640, p. 201 |
 | RL, RR, R0 | only in lines with X or Y; much is refused while on | 620 ISO, p. 154 |
 | RND, CHF | between lines in X and Y, before any offset; F is their own | 620, p. 291 |

@@ -200,7 +200,8 @@ class Klartext(Cycles):
         """
         self.refuse_beside("TOOL CALL", item)
         tool = self.in_spindle = self.tool
-        self.lose()
+        if self.dialect.m_codes[6].loses_position:
+            self.lose()
         if self.reading.stays:
             return [f"T{tool} M6"]
         return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from decimal import Decimal
-from math import atan2, degrees
+from math import atan2, degrees, hypot, sqrt
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.words import exact
@@ -24,6 +24,9 @@ MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G97", "G54", "G98", "G99"))
 LAST = 88  # M functions above are those of the control
 TIP = (128, 129)
 BEFORE = frozenset((3, 4, 7, 8))
+PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
+CENTRES = dict(zip("XYZ", "IJK", strict=True))
+DIGITS = 4  # decimals of a centre that is computed
 SIDES = {"G40": " R0", "G41": " RL", "G42": " RR"}
 TURN = 360.0
 LEAST = 1e-4  # degrees
@@ -34,7 +37,8 @@ class Lines(gx.Speller):
 
     place   where the axes stand, in numbers of the program; an axis that is not here is lost
     rounded axes that are where a helix ends, which is said by an angle
-    steps   G91 is in force;  said: the unit has been written;  tool: that of the last T word
+    steps   G91 is in force;  tool: that of the last T word
+    side    that of the last line;  waits: what was said since, for the next line in X and Y
     """
 
     def __init__(self, name: str, inch: bool) -> None:
@@ -45,7 +49,7 @@ class Lines(gx.Speller):
         self.motion, self.plane = "G0", "G17"
         self.steps = self.over = self.bounded = False
         self.tool = self.in_spindle = self.speed = ""
-        self.side = " R0"
+        self.side = self.waits = " R0"
 
     # --- programs ---
 
@@ -112,9 +116,9 @@ class Lines(gx.Speller):
                 self.steps = code == "G91"
             elif code in ("G20", "G21"):
                 if (code == "G20") != self.inch:
-                    raise gx.UnspeakableError("a TNC has one unit in a program")
+                    raise gx.UnspeakableError("a TNC has one unit in a program", ONE_UNIT)
             elif code == "G61":
-                raise gx.UnspeakableError("a TNC has no exact path: leave G61 out by drop")
+                raise gx.UnspeakableError("a TNC has no exact path", NO_EXACT_PATH)
             elif code[0] == "G" and code not in MODES and code not in ACTS:
                 raise gx.UnspeakableError(f"{code} has no words in Klartext")
 
@@ -135,8 +139,8 @@ class Lines(gx.Speller):
         number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
         if "M6" in codes:
             number, self.in_spindle = f" {self.tool}", self.tool
-            for axis in LINEAR + "ABC":
-                self.place.pop(axis, None)
+            if "M6" not in self.inert:
+                self.lose()
         if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:
             raise gx.UnspeakableError("the length of another tool than the one in the spindle")
         if number or speed:
@@ -153,7 +157,8 @@ class Lines(gx.Speller):
     # --- moves ---
 
     def _moves(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
-        side = self._side(codes, values)
+        self.waits = self._side(codes, values) or self.waits
+        side = self.waits if self.waits != self.side else ""
         feed = self._feed(values)
         if feed and self.motion == "G0" and "G53" not in codes:
             yield f"L{feed}"
@@ -168,10 +173,12 @@ class Lines(gx.Speller):
         elif self.motion in ("G2", "G3") and (ends or values):
             yield from self._arc(ends, values, feed)
         elif ends:
+            if side and ends.keys().isdisjoint("XY"):
+                raise gx.UnspeakableError(f"{side.strip()} in a line without X and Y")
+            self.side = self.waits
             yield f"L{self._line(ends)}{side or self._idle(ends)}{self._rapid(feed)}"
-        elif feed or (side and side != self.side):
-            yield f"L{side}{feed}"
-        self.side = side or self.side
+        elif feed:
+            yield f"L{feed}"
         if left := [letter for letter in values if letter not in "DH"]:
             raise gx.UnspeakableError(f"{left[0]} has no words in Klartext")
 
@@ -224,8 +231,13 @@ class Lines(gx.Speller):
         """Yield CC with C or CP, or CR for an arc by its radius. Raises UnspeakableError."""
         sense = " DR+" if self.motion == "G3" else " DR-"
         turns, radius = int(values.pop("P", "1")), values.pop("R", None)
-        if self.plane != "G17" or "K" in values or not {"X", "Y"} <= self.place.keys():
-            raise gx.UnspeakableError("an arc out of XY, or from where it is not known")
+        if not {*PLANES[self.plane]} <= self.place.keys():
+            raise gx.UnspeakableError("an arc from where it is not known")
+        if self.waits != self.side:
+            raise gx.UnspeakableError("a contour begins and ends in lines, not in arcs")
+        if self.plane != "G17":
+            yield from self._aside(ends, values, radius, turns, f"{sense}{feed}")
+            return
         if radius is not None:
             if set(ends) - {"X", "Y"} or turns > 1:
                 raise gx.UnspeakableError("a helix by its radius has no words in Klartext")
@@ -243,6 +255,48 @@ class Lines(gx.Speller):
         self._stand(ends)
         self.rounded |= {"X", "Y"}
         yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
+
+    def _aside(
+        self,
+        ends: dict[str, Decimal],
+        values: dict[str, str],
+        radius: str | None,
+        turns: int,
+        rest: str,
+    ) -> Iterator[str]:
+        """Yield CC and C of an arc out of XY. Raises UnspeakableError."""
+        axes = PLANES[self.plane]
+        if set(ends) - {*axes} or turns > 1 or self.side != " R0":
+            raise gx.UnspeakableError("a helix or a contour out of XY has no words in Klartext")
+        start = {axis: self.place[axis] for axis in axes}
+        step = start if self.steps else dict.fromkeys(axes, Decimal(0))
+        there = {a: ends[a] + step[a] if a in ends else start[a] for a in axes}
+        if there == start and self.rounded & {*axes}:
+            raise gx.UnspeakableError("a whole turn from where a helix ends, out of XY")
+        if radius is None:
+            pole = {a: start[a] + Decimal(values.pop(CENTRES[a], "0")) for a in axes}
+        else:
+            pole = self._centre(start, there, float(radius))
+        self.place |= there
+        self.rounded -= {*axes}
+        yield f"CC{_words(pole)}"
+        yield f"C{_words(there)}{rest}"
+
+    def _centre(
+        self, start: dict[str, Decimal], end: dict[str, Decimal], radius: float
+    ) -> dict[str, Decimal]:
+        """Return the centre of an arc by its radius, rounded. Raises UnspeakableError."""
+        first, second = start
+        by = float(end[first] - start[first]), float(end[second] - start[second])
+        size = hypot(*by)
+        if not size:
+            raise gx.UnspeakableError("an arc by its radius that ends where it starts")
+        aside = sqrt(max(0.0, radius**2 - size**2 / 4)) / size
+        aside *= 1 if (radius > 0) == (self.motion == "G3") else -1
+        middle = (float(start[a] + end[a]) / 2 for a in start)
+        normal = -by[1], by[0]
+        found = (m + aside * n for m, n in zip(middle, normal, strict=True))
+        return {a: Decimal(f"{c:.{DIGITS}f}") for a, c in zip(start, found, strict=True)}
 
     def _whole(self, ends: dict[str, Decimal]) -> bool:
         """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
@@ -268,6 +322,8 @@ class Lines(gx.Speller):
             self.place.pop(axis, None)
 
 
+ONE_UNIT = gx.put_before("metric")
+NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
 ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", *SIDES))
 
 

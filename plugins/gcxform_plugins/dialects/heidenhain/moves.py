@@ -11,6 +11,8 @@ from gcxform_plugins.dialects.heidenhain.positioning import Said, Saying
 from gcxform_plugins.dialects.heidenhain.words import ROTARY, Element, exact, written
 
 TURN = 360.0
+PLANES = {"XY": "G17", "ZX": "G18", "YZ": "G19"}
+CENTRES = dict(zip("XYZ", "IJK", strict=True))
 SIDES = {"RL": "G41", "RR": "G42"}
 LEAST_ANGLE = 1e-4  # degrees, the last decimal of the control: less is neither an arc nor a turn
 
@@ -82,7 +84,7 @@ class Moves(Saying):
         if self.following or self.in_spindle in ("", "0"):
             self.refuse("radius compensation without a tool, or under M128", said.side)
         self.side = side
-        return f"{side} D{self.in_spindle}" if side else "G40"
+        return f"{self.in_plane('G17')}{side} D{self.in_spindle}" if side else "G40"
 
     def keep_side(self, said: Said) -> None:
         """Refuse a change of sides in a block that is no line in X and Y. Raises InputError."""
@@ -155,11 +157,11 @@ class Moves(Saying):
 
     def centre(self, items: Sequence[gx.Item]) -> list[str]:
         """CC: the centre of circles, and the pole of polar coordinates."""
-        pole = {}
+        pole: dict[str, str] = {}
         for item in items[1:]:
             axis, number = self.reached(item)
-            if axis not in "XY" or axis in pole:
-                self.refuse(f"CC with {item.name}: only circles in X and Y are read", item)
+            if axis not in "XYZ" or axis in pole or len(pole) == 2:
+                self.refuse(f"CC with {item.name}: it takes two of X, Y and Z", item)
             pole[axis] = number
         if not pole:
             pole = {axis: exact(self.stands_at(axis, items[0])) for axis in "XY"}
@@ -171,8 +173,17 @@ class Moves(Saying):
     def circle(self, items: Sequence[gx.Item]) -> list[str]:
         """C: a circle about CC; it ends where it starts if no end is given."""
         said = self.said(items[1:])
-        ends = self._ends(said, "XY")
+        axes = self._plane_of(items[0])
+        ends = self._ends(said, axes)
+        if axes != "XY" and (self.side or self.following or len(ends) < 2):
+            message = "a circle out of XY with one coordinate, beside a contour, or under M128"
+            self.refuse(message, items[0])
         return self._all(said, self._arc(said, items[0], ends))
+
+    def _plane_of(self, path: gx.Item) -> str:
+        """Return the axes of the plane in which CC and the circle about it are."""
+        named = self._pole(path).keys()
+        return next(axes for axes in PLANES if named == {*axes})
 
     def by_radius(self, items: Sequence[gx.Item]) -> list[str]:
         """CR: a circle by its radius; below 0 it is the longer way."""
@@ -193,7 +204,7 @@ class Moves(Saying):
         for item in said.axes:
             axis, number = self.reached(item)
             if axis in ends or axis not in allowed:
-                message = f"{item.name} in a circle: only those in X and Y are read"
+                message = f"{item.name} in a circle in {' and '.join(allowed)}"
                 self.refuse(message, item)
             ends[axis] = number
         return ends
@@ -206,25 +217,30 @@ class Moves(Saying):
         if said.rapid or said.machine or said.radius:
             raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
         self._check_feed()
-        start = {axis: self.stands_at(axis, path) for axis in "XY"}
+        plane = self._plane_of(path) if path.name == "C" else "XY"
+        start = {axis: self.stands_at(axis, path) for axis in plane}
         by_size = " R" in words or path.name == "CT"
         if not words:
             pole = self._pole(path)
             words = "".join(
-                f" {letter}{exact(Decimal(pole[axis]) - start[axis])}"
-                for axis, letter in (("X", "I"), ("Y", "J"))
+                f" {CENTRES[axis]}{exact(Decimal(pole[axis]) - start[axis])}"
+                for axis in sorted(plane)
             )
         self.last = self._element(said.sense, ends, None if by_size else self._pole(path))
         self.last = None if by_size else self.last
         self.place.update(ends)
-        self.moved.update("XY", ends)
+        self.moved.update(plane, ends)
         self.polar = None
-        to = "".join(f" {axis}{self.place[axis]}" for axis in ("X", "Y", *ends.keys() - {"X", "Y"}))
-        return f"{self.moving(said.sense)}{to}{words}{said.feed}".lstrip()
+        axes = (*sorted(plane), *ends.keys() - {*plane})
+        to = "".join(f" {axis}{self.place[axis]}" for axis in axes)
+        code = f"{self.in_plane(PLANES[plane])}{self.moving(said.sense)}"
+        return f"{code.rstrip()}{to}{words}{said.feed}".lstrip()
 
     def _pole(self, path: gx.Item) -> dict[str, str]:
         if not self.pole:
             raise self.refusal("GX213", f"{path.name} needs a CC before it", path)
+        if path.name != "C" and "Z" in self.pole:
+            self.refuse(f"{path.name} about a CC out of XY", path)
         return self.pole
 
     # --- polar coordinates ---

@@ -32,7 +32,7 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected", "by_cycle"),
+    *("selected", "by_cycle", "plane"),
 )
 CHANGING = frozenset((dict, list, set))
 """The types of what is changed in its place: as it was it is known by a copy alone."""

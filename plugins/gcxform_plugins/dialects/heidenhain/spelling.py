@@ -49,7 +49,7 @@ def spelled(line: str, blocks: Sequence[str], polar: tuple[str, str] | None) -> 
     if path is None or len(set(said)) != len(said):
         return None
     text, behind = line[: len(code(line))], line[len(code(line)) :]
-    if path[1].upper() in ("C", "CR", "CP") and not {letter for letter, _ in words} & set("IJR"):
+    if path[1].upper() in ("C", "CR", "CP") and not {letter for letter, _ in words} & set("IJKR"):
         return None
     named = [found["axis"].upper() for found in AXIS.finditer(text)]
     circle = path[1].upper() in ("C", "CR", "CP", "LP")

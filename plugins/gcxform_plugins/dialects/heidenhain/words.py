@@ -44,13 +44,14 @@ class Words(gx.Translator):
 
     place     where the axes stand, as the program counts it; an axis that is not here is lost
     lost      the line, from 1, in which the program has lost axes last, by axis
-    pole      X and Y of CC, as numbers of the program
+    pole      the two coordinates of CC, as numbers of the program
     polar     PR and PA that were programmed last, None after other moves
     polar_at  PR and PA that lines lead to by steps; None where they do to several places
     last      code, start and centre of the element that ends where the axes stand; None where that
               has no direction in X and Y
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
+    plane     G17, G18 or G19, as blocks have it
     over      whether the program has ended
     q         what parameters are worth, by their names; None where only the control knows
     computes  something was computed, or decided: lines are no more what they say by themselves
@@ -69,7 +70,7 @@ class Words(gx.Translator):
         self.last: Element | None = None
         self.polar_at: dict[int, tuple[str, str] | None] = {}
         self.moved: set[str] = set()
-        self.motion = ""
+        self.motion, self.plane = "", "G17"
         self.feed = ""
         self.tool_feed = ""
         self.feed_lost = False
@@ -138,6 +139,13 @@ class Words(gx.Translator):
             return ""
         self.motion = code
         return code
+
+    def in_plane(self, code: str) -> str:
+        """Return the code of a plane with a blank behind it, where another one is in force."""
+        if code == self.plane:
+            return ""
+        self.plane = code
+        return f"{code} "
 
     def lose(self, axes: str | None = None) -> None:
         """Forget where axes stand, all of them if none are named."""
