@@ -94,7 +94,7 @@ REFUSED = {
     "a circle within its end": (["CC X+5 Y+0", "C X+10.015 Y+0 DR+"], None),
     "a circle upwards": (["CC X+5 Y+0", "C X+10 Y+0 Z+5 DR+"], "GX210"),
     "a circle in rapid": (["CC X+5 Y+0", "C X+10 Y+0 DR+ FMAX"], "GX213"),
-    "a centre in ZX": (["CC X+5 Z+0"], "GX210"),
+    "a centre in ZX, and a helix there": (["CC X+0 Z+0", "C X+0 Y+1 Z+0 DR+ F1"], "GX210"),
     "half a centre": (["CC X+5"], "GX210"),
     "a radius too short": (["CR X+10 Y+0 R+4 DR+"], "GX302"),
     "no radius": (["CR X+10 Y+0 R0 DR+"], "GX303"),
