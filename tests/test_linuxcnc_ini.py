@@ -85,6 +85,32 @@ def test_what_includes_another_file_is_refused(folder: Path) -> None:
         ends_at(folder, "g0 x1")
 
 
+def test_a_code_that_runs_a_program_is_refused_where_it_stands(folder: Path) -> None:
+    (folder / "m.ini").write_text("[RS274NGC]\nREMAP=M61 ngc=a\nREMAP = m6 modalgroup=6 ngc=b\n")
+    assert ends_at(folder, "g0 x1") == 1.0
+    for code in ("m6", "m61 q1"):
+        with pytest.raises(gx.InputError, match="runs a program of the machine"):
+            ends_at(folder, f"t1 {code}\ng91 g0 x1")
+
+
+@pytest.mark.parametrize("key", ["TOOL_CHANGE_POSITION = 0 0 2", "TOOL_CHANGE_QUILL_UP = 1"])
+def test_a_tool_change_that_moves(folder: Path, key: str) -> None:
+    step = "t1 m6\ng91 g0 x1"
+    (folder / "m.ini").write_text("[EMCIO]\nTOOL_CHANGE_AT_G30 = 0\n")
+    assert ends_at(folder, step) == 1.0
+    (folder / "m.ini").write_text(f"[EMCIO]\n{key}\n")
+    assert ends_at(folder, step) != 1.0
+
+
+@pytest.mark.parametrize("line", ["REMAP=T ngc=t", "RS274NGC_STARTUP_CODE = G17 G20"])
+def test_words_and_modes_that_are_not_followed(folder: Path, line: str) -> None:
+    (folder / "m.ini").write_text("[RS274NGC]\nRS274NGC_STARTUP_CODE = g21 g40 G64P0.01\n")
+    assert ends_at(folder, "g0 x1") == 1.0
+    (folder / "m.ini").write_text(f"[RS274NGC]\n{line}\n")
+    with pytest.raises(gx.UsageError, match="not followed"):
+        ends_at(folder, "g0 x1")
+
+
 def test_a_control_that_has_no_such_file(folder: Path) -> None:
     (folder / "machine.toml").write_text('format = 1\nini = "m.ini"\nini-control = "linuxnc"\n')
     with pytest.raises(gx.UsageError, match="did you mean"):

@@ -3,7 +3,8 @@
 `[control.macro.G100] ends = "at XYZ"` is said of a code that the dialect does not have, or that it
 refuses as one that moves by itself in its own block. All words of such a block belong to the code,
 as those of G65 do. A code that stays in force, or that the dialect resolves, cannot be declared.
-They are those of the control that a program is in; nothing is said of another one.
+They are those of the control that a program is in; nothing is said of another one. A file of the
+control may also say that one of its own M codes moves axes there, or runs a program.
 """
 
 from __future__ import annotations
@@ -16,9 +17,11 @@ from typing import Any, cast
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.codes import Code, Effect
 from gcxform.dialect.dialect import Dialect
+from gcxform.machine.control import OTHER
 
 ALL_WORDS = "ABCDEFHIJKLMPQRSTUVWXYZ"
 MACRO = "macro "
+RUNS = "the file of the control says that it runs a program of the machine"
 ONE_BLOCK = "non-modal"
 
 
@@ -28,18 +31,44 @@ def with_own_codes(dialect: type[Dialect], control: Mapping[str, str | float]) -
     Raises UsageError for codes that the dialect has.
     """
     names = {name.partition(MACRO)[2] for name, ends in control.items() if _declares(name, ends)}
+    other = {
+        name.partition(OTHER)[2]: str(how)
+        for name, how in control.items()
+        if name.startswith(OTHER)
+    }
+    dialect = _changed(cast(Any, dialect), tuple(sorted(other.items()))) if other else dialect
     return _with(cast(Any, dialect), tuple(sorted(names))) if names else dialect
 
 
 def without_own_codes(control: Mapping[str, str | float]) -> dict[str, str | float]:
     """Return what a machine file says, for a program in the language of another control."""
-    return {name: said for name, said in control.items() if not _declares(name, said)}
+    return {
+        name: said
+        for name, said in control.items()
+        if not _declares(name, said) and not name.startswith(OTHER)
+    }
 
 
 def _declares(name: str, said: str | float) -> bool:
     """Whether a setting declares a code."""
     code = name.removeprefix(MACRO)
     return code != name and code[0] in "GM" and isinstance(said, str)
+
+
+@cache
+def _changed(dialect: Any, other: tuple[tuple[str, str], ...]) -> type[Dialect]:
+    """Return the dialect with M codes that do something else on this machine."""
+    codes = dict(dialect.m_codes)
+    chosen = dict(dialect.chosen)
+    for setting, how in other:
+        name = setting.removeprefix(OTHER)
+        number = int(name[1:])
+        does = {"loses_position": True} if how == "moves" else {"barrier": RUNS}
+        if number in codes:
+            codes[number] = replace(codes[number], **does)
+            chosen.pop(name, None)
+    own = {"m_codes": codes, "chosen": chosen}
+    return cast("type[Dialect]", type(dialect.__name__, (dialect,), own))
 
 
 @cache

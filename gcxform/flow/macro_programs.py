@@ -11,7 +11,13 @@ from pathlib import Path
 from gcxform.flow.execution import HINT
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
-from gcxform.flow.numbered_files import begins_program, file_of, first_block, program_number
+from gcxform.flow.numbered_files import (
+    begins_program,
+    file_of,
+    first_block,
+    is_named,
+    program_number,
+)
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Statement
 
@@ -97,6 +103,9 @@ class MacroPrograms(MacroWords):
 
     def called(self, block: Block) -> tuple[int, int]:
         """Return number and count of a call. Raises InputError."""
+        if is_named(block):
+            message = "which file the control calls by this name is not known"
+            raise self.refusal("GX210", message, "call the program by its number")
         number = self.number(block, "P")
         if number % 1 != 0:
             raise self.refusal("GX221", "a call takes a number in P, and a count from 1 in L")

@@ -44,11 +44,16 @@ def first_block(listing: Listing) -> int:
 
 
 def begins_program(block: Block) -> bool:
-    """Whether a program begins at a block, by a number or by a name."""
-    named = any(
-        isinstance(i, Mark) and i.kind in ("program_id", "program_name") for i in block.items
-    )
-    return named or any(word.address == "O" for word in block.words)
+    """Whether a program begins at a block, by a number or by a name; M98 <NAME> would call one."""
+    if is_named(block):
+        return not any(word.address in "GM" for word in block.words)
+    numbered = any(isinstance(i, Mark) and i.kind == "program_id" for i in block.items)
+    return numbered or any(word.address == "O" for word in block.words)
+
+
+def is_named(block: Block) -> bool:
+    """Whether a name of a program stands in a block."""
+    return any(isinstance(i, Mark) and i.kind == "program_name" for i in block.items)
 
 
 def program_number(block: Block) -> int | None:

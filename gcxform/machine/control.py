@@ -21,6 +21,8 @@ from gcxform.values import dataclass
 
 INERT: Final = "inert-m"
 """The setting that lists M codes which move nothing."""
+OTHER: Final = "code "
+"""What the settings begin with that a file of the control says of an M code of its own."""
 Value = str | float | list[int] | dict[str, dict[str, str | int]]
 LIKE: Final = "like"
 """The key that names a preset, which is gone when the settings are read."""
@@ -121,6 +123,11 @@ def settings_of(control: Mapping[str, Value]) -> dict[str, str | float]:
     found = {k: _KNOWN[k].read(v) for k, v in control.items() if k not in (INERT, MACRO)}
     calls = control.get(MACRO, {})
     return found | (macro_tables.calls_of(calls) if isinstance(calls, dict) else {})
+
+
+def codes_of(codes: Mapping[str, str]) -> dict[str, str | float]:
+    """Return what a file of the control says of its own M codes, as settings."""
+    return {f"{OTHER}{name}": how for name, how in codes.items()}
 
 
 def inert_of(control: Mapping[str, Value]) -> frozenset[int]:

@@ -28,11 +28,13 @@ class ProgramSettings:
     """What a file of a control says of programs.
 
     `folders` are those in which subprograms are looked up, `parameters` the values that it gives to
-    parameters which programs read, as `parameters` of [input] names them.
+    parameters which programs read, as `parameters` of [input] names them. `codes` are M codes that
+    do something else than the control's own: "moves" its axes besides, or runs a "program".
     """
 
     folders: tuple[Path, ...] = ()
     parameters: Mapping[str, float] = field(default_factory=dict)
+    codes: Mapping[str, str] = field(default_factory=dict)
 
 
 class ControlFiles:

@@ -144,4 +144,25 @@ MUTATIONS = (
         '""',
         "text/strip-operators",
     ),
+    Mutation(
+        "linuxcnc: a remapped code is its own",
+        "plugins/gcxform_plugins/controls/linuxcnc/ini.py",
+        'if (section, key) == ("RS274NGC", "REMAP"):',
+        "if False:",
+        "tests/test_linuxcnc_ini.py::test_a_code_that_runs_a_program_is_refused_where_it_stands",
+    ),
+    Mutation(
+        "linuxcnc: a tool change that moves axes does not",
+        "plugins/gcxform_plugins/controls/linuxcnc/ini.py",
+        '"M6": "moves"',
+        '"M9": "moves"',
+        "tests/test_linuxcnc_ini.py::test_a_tool_change_that_moves",
+    ),
+    Mutation(
+        "linuxcnc: other modes at the start",
+        "plugins/gcxform_plugins/controls/linuxcnc/ini.py",
+        'if letter.upper() in "GM" and',
+        'if letter.upper() in "M" and',
+        "tests/test_linuxcnc_ini.py::test_words_and_modes_that_are_not_followed",
+    ),
 )
