@@ -241,4 +241,18 @@ MUTATIONS = (
         'if item.kind == "titled":',
         "tests/test_corpus.py::test_case[dialects/fanuc/title-for-linuxcnc]",
     ),
+    Mutation(
+        "reading: a word behind the first bracket of a comment is text",
+        "grammars/gcxform_grammars/fanuc.lark",
+        "[^()0-9#",
+        "[^()#",
+        "tests/test_corpus.py::test_case[text/brackets-around-a-word]",
+    ),
+    Mutation(
+        "writing: brackets in a comment go to another control",
+        "gcxform/emit/expressible.py",
+        'if source is not target and text[0] == "(":',
+        "if False:",
+        "tests/test_corpus.py::test_case[text/brackets-in-a-comment]",
+    ),
 )
