@@ -66,7 +66,10 @@ class Places:
         return self.interpreter.axes
 
     def words(self) -> dict[str, float]:
-        """Return where the axes stand, as the words of a block would say it; nan: not known."""
+        """Return where the axes stand, as the words of a block would say it; nan: not known.
+
+        The sign of a zero is that of the word before it and of shifts, which is not followed: -0.
+        """
         state = self.now()
         frame = state.frames.frame()
         axes = self.interpreter.axes
@@ -75,7 +78,7 @@ class Places:
         words = frame.words(state.position[np.newaxis])[0]
         inch = INCH if state.groups["units"] else 1.0
         return {
-            axis: float(word) / (inch if axis in LINEAR else 1.0)
+            axis: float(word) / (inch if axis in LINEAR else 1.0) or -0.0
             for axis, word in zip(axes, words, strict=True)
         }
 

@@ -240,4 +240,18 @@ MUTATIONS = (
         "and a < 0:",
         "tests/test_corpus.py::test_case[expressions/fanuc-doubtful]",
     ),
+    Mutation(
+        "computing: a place that is 0 has the sign of a plus",
+        "gcxform/flow/places.py",
+        " or -0.0",
+        "",
+        "tests/test_corpus.py::test_case[flow/zero-of-a-place]",
+    ),
+    Mutation(
+        "computing: the angle of a zero hangs on no sign",
+        "gcxform/dialect/arithmetic.py",
+        "if y == 0 and x <= 0 and",
+        "if y == 0 and x < 0 and",
+        "tests/test_corpus.py::test_case[flow/zero-of-a-place]",
+    ),
 )

@@ -74,7 +74,8 @@ def feed_difference(ours: Any, theirs: CanonMove) -> str | None:
     unit = 1.0 if alone else theirs.unit
     expected, slack = [ours.feed], SLACK + PRINTED * 25.4
     if ours.feed_mode == "G93":
-        if not ours.end.keys() <= ours.start.keys():  # how far it goes only the machine knows
+        known = ours.start.keys() & ours.end.keys()
+        if not theirs.end.keys() <= known:  # how far it goes only the machine knows
             return None
         ways = [rotary] if alone else [linear, *_circle_lost(ours)]
         expected = [max(way * ours.feed, LEAST_RATE * unit) for way in ways]

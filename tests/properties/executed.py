@@ -42,6 +42,8 @@ NOT_RESOLVED = (
     "from where it stands, and that is not known",
     "where this spline starts or ends in X and Y is not known",
     "an arc in a plane that is turned",
+    "this angle hangs on the sign of a zero",
+    "which are turned together",
 )
 """Why programs are refused that the interpreter runs, in the way that its own faults decide."""
 
