@@ -19,7 +19,7 @@ from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.system.arrays import Flags, Ints
-from gcxform.system.distinct import distinct
+from gcxform.system.distinct import distinct, union
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Form
 
@@ -115,10 +115,10 @@ class Copying:
         threads = distinct(self.path.block[self.path.form == Form.THREAD])
         if len(threads):
             other = (pieces.count[threads] != 1) | ~self.same.units()[threads]
-            wrong = np.union1d(wrong, threads[other])
+            wrong = union(wrong, threads[other])
         points = distinct(self.path.block[np.isin(self.path.form, IN_PLACE)])
         other = np.isin(points, pieces.line[stated.repaired]) | ~self.same.units()[points]
-        wrong = np.union1d(wrong, points[other])
+        wrong = union(wrong, points[other])
         if not len(wrong):
             return
         form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))

@@ -36,6 +36,7 @@ from gcxform.modal.program_end import Frame
 from gcxform.syntax.scan import Window
 from gcxform.syntax.tree import Comment, Item, Word
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
 from gcxform.values import dataclass
 
@@ -195,7 +196,7 @@ class _Job:
         if not task.manner.crossing:
             return
         shapes = task.window.shape[task.read.live :]
-        for number in np.unique(shapes).tolist():
+        for number in distinct(shapes).tolist():
             if defines(task.table.shapes.shapes[number].block):
                 line = task.read.live + int(np.argmax(shapes == number))
                 message = "nothing calls this subprogram, and in another dialect it would be lost"
@@ -230,7 +231,7 @@ class _Job:
             return
         waits = task.table.slots[task.shape, ord("P") - 65]
         cycles = self.path.block[self.path.form == Form.CYCLE]
-        for line in np.unique(cycles[waits[cycles] >= 0]).tolist():
+        for line in distinct(cycles[waits[cycles] >= 0]).tolist():
             number = int(task.window.first_number[line] + waits[line])
             pointed = bool(task.window.decimals[number] >= 0)
             was, now = (d.point_rule.seconds("P", pointed) for d in (source, target))

@@ -18,6 +18,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.printed import is_output, prints_values
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
+from gcxform.system.distinct import union
 from gcxform.values import dataclass
 
 CODES_OF_CALLS = frozenset({97, 98, 99, 198})
@@ -99,7 +100,7 @@ class Listing:
             return
         names = [{code_name(word) for word in s.block.words} for s in self.table.shapes.shapes]
         calls = np.array([not codes.isdisjoint(each) for each in names], np.bool_)
-        self.special = np.union1d(self.special, np.flatnonzero(calls[self.window.shape]))
+        self.special = union(self.special, np.flatnonzero(calls[self.window.shape]))
 
     def part(self, line: int) -> tuple[int, int]:
         """Return the first line of the file in which a line stands, and the line behind its last.

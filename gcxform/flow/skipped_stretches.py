@@ -13,6 +13,7 @@ from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.modal.meaning.tables import COLUMNS, CYCLES, NUMBER, MeaningTable
 from gcxform.syntax.tree import Block
 from gcxform.system.arrays import Flags, Ints, Small
+from gcxform.system.distinct import distinct
 from gcxform.values import dataclass
 
 CARRIED = ("motion", "plane", "distance", "arc-distance")
@@ -44,7 +45,7 @@ def effect_of(run: RunState, table: MeaningTable, shapes: Ints, lines: Ints) -> 
     """
     letters: set[str] = set()
     axes = run.dialect.axes
-    for shape in np.unique(shapes).tolist():
+    for shape in distinct(shapes).tolist():
         meaning = table.meanings[shape]
         if why := _not_carried(meaning):
             run.line = int(lines[np.argmax(shapes == shape)])

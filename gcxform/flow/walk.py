@@ -20,6 +20,7 @@ from gcxform.flow.listing import Definition, Listing
 from gcxform.modal.expressions.value import parameter_key
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
+from gcxform.system.distinct import distinct
 from gcxform.values import dataclass
 
 PARAMETER = re.compile(r"#[ \t]*(<[^<>]*>|[0-9]+)?")
@@ -220,7 +221,7 @@ def split(
 ) -> tuple[Ints, frozenset[int], tuple[Made, ...]]:
     """Return steps in which every line that was jumped to begins one; jumps and assignments so."""
     begin = np.array(sorted(jumps), np.int64) + 1
-    targets = np.unique(table[begin[begin < len(table)], 0])
+    targets = distinct(table[begin[begin < len(table)], 0])
     low = np.searchsorted(targets, table[:, 0], "right")
     high = np.searchsorted(targets, table[:, 1], "left")
     more = np.maximum(high - low, 0)

@@ -18,6 +18,7 @@ from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import COMPUTED
 from gcxform.system.arrays import Flags, Floats, Ints, Small
+from gcxform.system.distinct import distinct
 
 UNKNOWN = Increments("")
 
@@ -212,7 +213,7 @@ class Pointless:
         for code, unit in (("G94", "{}/min"), ("G95", "{}/turn"), ("G93", "/min")):
             for inches, name in ((False, "mm"), (True, "inch")):
                 here = taken & (mode == NUMBER[code]) & (inch == inches)
-                for count in np.unique(counts[here]).tolist():
+                for count in distinct(counts[here]).tolist():
                     worth = f"{1 / count:.6g} {unit.format(name)}".replace(" /", "/")
                     self.assumed[f"an F without a point counts {worth}"] = None
 

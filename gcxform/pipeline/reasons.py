@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from gcxform.system.arrays import Flags, Ints
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.columns import COLUMNS
 from gcxform.toolpath.path import BLOCK_MODES, Toolpath
 
@@ -28,7 +29,7 @@ def changed_lines(before: Toolpath, after: Toolpath) -> list[int]:
 def _by_moves(before: Toolpath, after: Toolpath) -> Iterator[int]:
     """Yield the lines whose moves differ in number or in any column."""
     if len(before) == len(after) and np.array_equal(before.source, after.source):
-        yield from np.unique(before.source[_differ(before, after)]).tolist()
+        yield from distinct(before.source[_differ(before, after)]).tolist()
         return
     old, new = _rows(before), _rows(after)
     yield from (line for line in {*old, *new} if old.get(line) != new.get(line))

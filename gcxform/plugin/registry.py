@@ -7,14 +7,12 @@ of plugins must not matter.
 
 from __future__ import annotations
 
-import importlib.metadata
 import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import redirect_stdout, suppress
 from dataclasses import field, fields, replace
 from functools import cache, partial
-from importlib.metadata import EntryPoint
 from inspect import getattr_static
 from types import MappingProxyType
 from typing import Any, TypeVar
@@ -33,9 +31,11 @@ from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.machine.presets import TABLES, MachinePreset
 from gcxform.plugin import hookspecs
+from gcxform.plugin.distributions import Point, entry_points
 from gcxform.plugin.offered import Later, Offered, Waiting
 from gcxform.toolpath.facts import FACTS, Fact
 from gcxform.values import dataclass
+from gcxform.version import VERSION
 
 CORE = "gcxform"
 KINDS: Mapping[str, str] = MappingProxyType(
@@ -79,7 +79,7 @@ class Registry:
     facts: Offered[Fact] = field(default_factory=lambda: Offered({f.name: f for f in FACTS}))
     formats: Offered[type[ErrorFormat]] = field(default_factory=Offered)
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    _origins: dict[tuple[str, str], EntryPoint] = field(default_factory=dict, repr=False)
+    _origins: dict[tuple[str, str], Point] = field(default_factory=dict, repr=False)
 
     @classmethod
     def load(cls) -> Registry:
@@ -91,8 +91,8 @@ class Registry:
         manager = pluggy.PluginManager(hookspecs.PROJECT)
         manager.add_hookspecs(hookspecs)
         points = {}
-        for point in importlib.metadata.entry_points(group=hookspecs.GROUP):
-            name = f"{point.name} of {_origin(point)}"
+        for point in entry_points(hookspecs.GROUP):
+            name = f"{point.name} of {point.origin}"
             if registry._register(manager, name, point):
                 points[name] = point
         for kind, hook in KINDS.items():
@@ -121,7 +121,7 @@ class Registry:
     def origin(self, kind: str, name: str) -> str:
         """Return the distribution, with its version, that a thing came with."""
         point = self._origins.get((kind, name))
-        return _origin(point) if point else f"{CORE} {importlib.metadata.version(CORE)}"
+        return point.origin if point else f"{CORE} {VERSION}"
 
     def dialect(self, name: str, where: Location | None = None) -> type[Dialect]:
         """Return a dialect; raises UsageError, at the place, if there is none of that name."""
@@ -152,7 +152,7 @@ class Registry:
         message = f"there is no {kind} {name!r}"
         raise UsageError.one(code, message, where, either(*filter(None, hints), by="; "))
 
-    def _register(self, manager: pluggy.PluginManager, name: str, point: EntryPoint) -> bool:
+    def _register(self, manager: pluggy.PluginManager, name: str, point: Point) -> bool:
         """Import a plugin and register its hooks; return whether that went well."""
         try:
             with redirect_stdout(sys.stderr):  # stdout is for programs
@@ -169,7 +169,7 @@ class Registry:
                 self._warn(point, f"has the hook {caller.name!r}, which does not exist", hint)
         return True
 
-    def _take(self, kind: str, implementation: pluggy.HookImpl, point: EntryPoint) -> None:
+    def _take(self, kind: str, implementation: pluggy.HookImpl, point: Point) -> None:
         """Take what one hook of one plugin returns."""
         try:
             with redirect_stdout(sys.stderr):
@@ -184,7 +184,7 @@ class Registry:
             elif name := self._checked(kind, offer, point):
                 self._add(kind, name, offer, point)
 
-    def _checked(self, kind: str, offer: Any, point: EntryPoint) -> str:
+    def _checked(self, kind: str, offer: Any, point: Point) -> str:
         """Return the name of what a plugin offers; nothing, and a warning, if it is no such."""
         try:
             return _CHECKS[kind](offer)
@@ -193,7 +193,7 @@ class Registry:
             self._warn(point, message)
             return ""
 
-    def _loaded(self, kind: str, offer: Later, point: EntryPoint) -> Any:
+    def _loaded(self, kind: str, offer: Later, point: Point) -> Any:
         """Import what a plugin has named; None, and a warning, if that is not what it said."""
         try:
             with redirect_stdout(sys.stderr):
@@ -206,18 +206,18 @@ class Registry:
             self._warn(point, f"names the {kind} {offer.name!r}, and {offer.place} is {name!r}")
         return thing if name == offer.name else None
 
-    def _add(self, kind: str, name: str, offer: Any, point: EntryPoint) -> None:
+    def _add(self, kind: str, name: str, offer: Any, point: Point) -> None:
         table = getattr(self, TABLES_OF[kind])
         if name in list(table):  # by the names: nothing is imported
-            both = f"{self.origin(kind, name)} and {_origin(point)}"
+            both = f"{self.origin(kind, name)} and {point.origin}"
             message = f"two plugins offer the {kind} {name!r}: {both}"
             hint = "uninstall one of them, or rename it there"
             raise UsageError.one("GX801", message, hint=hint)
         table.add(name, offer)
         self._origins[kind, name] = point
 
-    def _warn(self, point: EntryPoint, message: str, hint: str = "") -> None:
-        text = f"the plugin {point.name!r} of {_origin(point)} {message}"
+    def _warn(self, point: Point, message: str, hint: str = "") -> None:
+        text = f"the plugin {point.name!r} of {point.origin} {message}"
         finding = Diagnostic("GX802", text, hint=hint, severity=Severity.WARNING)
         self.diagnostics.append(finding)
 
@@ -241,13 +241,8 @@ def dialect_of(given: object) -> type[Dialect]:
 @cache
 def versions() -> str:
     """Return which distributions programs are read and written by, with their versions."""
-    points = importlib.metadata.entry_points(group=hookspecs.GROUP)
-    return ", ".join(sorted({_origin(point) for point in points}))
-
-
-def _origin(point: EntryPoint) -> str:
-    """Return the distribution of a plugin, with its version."""
-    return f"{point.dist.name} {point.dist.version}" if point.dist else point.value
+    points = entry_points(hookspecs.GROUP)
+    return ", ".join(sorted({point.origin for point in points}))
 
 
 def _reason(error: BaseException) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 
 def distinct(values: NDArray[Any]) -> NDArray[Any]:
@@ -17,3 +17,8 @@ def distinct(values: NDArray[Any]) -> NDArray[Any]:
     new = np.ones(len(ordered), np.bool_)
     np.not_equal(ordered[1:], ordered[:-1], out=new[1:])
     return ordered[new]
+
+
+def union(one: NDArray[Any], other: ArrayLike) -> NDArray[Any]:
+    """Return the values that are in an array or another of its type, ascending and each once."""
+    return distinct(np.append(one, np.asarray(other, one.dtype)))

@@ -22,6 +22,7 @@ import numpy as np
 
 from gcxform.syntax.numerals import Digits
 from gcxform.system.arrays import Bytes, Flags, Ints
+from gcxform.system.distinct import distinct
 from gcxform.values import dataclass
 from gcxform.view.packing import Section, Store, folded
 
@@ -134,7 +135,7 @@ def _reduced(text: bytes, numbers: _Numbers) -> bytes:
 
 def _columns(numbers: _Numbers) -> Iterator[tuple[dict[str, Any], list[bytes]]]:
     """Yield a column for each letter: what it is called and packed by, and its bytes."""
-    for letter in np.unique(numbers.letter).tolist():
+    for letter in distinct(numbers.letter).tolist():
         mine = numbers.letter == letter
         finest = int(numbers.decimals[mine].max())
         value = numbers.mantissa[mine] * TEN_TO[finest - numbers.decimals[mine]]

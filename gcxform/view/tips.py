@@ -18,6 +18,7 @@ from gcxform.diagnostics import UsageError
 from gcxform.machine.chain import Chain, Rotary, chain_of
 from gcxform.machine.machine import Machine
 from gcxform.system.arrays import Floats, Ints
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.circles import points_on_arcs
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.splines import points_on_splines
@@ -137,7 +138,7 @@ def _tip(
     """
     found = np.full(at.shape, np.nan)
     gauge = np.array(chain.tip)
-    for number in np.unique(frames).tolist():
+    for number in distinct(frames).tolist():
         frame, here = path.frames[number], frames == number
         tool = np.array(frame.tool)
         if frame.following:

@@ -18,6 +18,7 @@ from gcxform.modal.reader import windows_of
 from gcxform.modal.state import Reading
 from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
+from gcxform.system.distinct import distinct
 from gcxform.values import dataclass
 
 Places = dict[str, Location]
@@ -84,7 +85,7 @@ def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
         source = written_out(source, dialect, reading)
     for window, reader in windows_of(source, dialect):
         reader.table.update()
-        for number in np.unique(window.shape).tolist():
+        for number in distinct(window.shape).tolist():
             meaning = reader.table.meanings[number]
             if meaning.acts or meaning.lost_by or "D" in meaning.slots:
                 for line in np.flatnonzero(window.shape == number).tolist():

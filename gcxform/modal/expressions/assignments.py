@@ -41,6 +41,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.noted import Assigned, Unknown
 from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
 from gcxform.system.arrays import Floats, Ints
+from gcxform.system.distinct import distinct, union
 
 UNKNOWN = float("nan")
 FEW = 8  # lines for which columns do not pay
@@ -52,7 +53,7 @@ def compute(lines: Lines) -> None:
     Raises InputError for what has no value.
     """
     undecided = _undecided(lines)
-    having = np.union1d(np.flatnonzero(lines.flag("computes")), undecided).astype(np.int64)
+    having = union(np.flatnonzero(lines.flag("computes")), undecided).astype(np.int64)
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
         return
     _Run(lines, having, undecided).run()
@@ -95,7 +96,7 @@ class _Run:
         """Compute all lines as columns, if that can be done; return whether it was."""
         lines, having = self.lines, self.having
         shapes = lines.shape[having]
-        used = np.unique(shapes).tolist()
+        used = distinct(shapes).tolist()
         functions = [(shape, self.functions[shape]) for shape in used]
         groups = [
             Group(each, same := having[shapes == shape], lines.first[same])

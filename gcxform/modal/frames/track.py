@@ -28,7 +28,7 @@ from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
 from gcxform.modal.noted import WayHome
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.system.distinct import distinct
+from gcxform.system.distinct import distinct, union
 from gcxform.toolpath.columns import constant
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Plane
@@ -371,7 +371,7 @@ class Track:
         """Return the words of the plane's axes where radius and angle are programmed."""
         planes = distinct(self.modes.plane[here])
         if not np.isnan(self.state.polar).all():
-            planes = np.union1d(planes, self.state.polar_plane)
+            planes = union(planes, self.state.polar_plane)
         first, second, _ = Plane(int(self.modes.plane[here][0])).axes
         names = "XYZ"[first], "XYZ"[second]
         columns = []

@@ -22,6 +22,7 @@ from gcxform.modal.moves.rows import Rows
 from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.distinct import union
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
 from gcxform.values import dataclass
@@ -71,7 +72,7 @@ class Drilling:
             return np.empty(0, np.int64)
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         borders = np.flatnonzero(np.diff(way, prepend=0))
-        alone = np.union1d(np.flatnonzero(self._placeless), [*self._lost])
+        alone = union(np.flatnonzero(self._placeless), [*self._lost])
         if not len(alone):
             return borders
         alone = alone.astype(np.int64)
