@@ -43,7 +43,7 @@ CHANGE = "G0 X1. Y2. Z5.\nT1 M6\nG0 X5.\nG1 Z1. F100."
 
 def test_a_tool_change_of_the_target_may_be_said_to_move_nothing():
     found = refused("linuxcnc", "fanuc", CHANGE)
-    assert (found.code, found.hint.endswith('inert = ["M6"] in [output]')) == ("GX509", True)
+    assert (found.code, 'inert = ["M6"] in [output]' in found.hint) == ("GX509", True)
     assert said("linuxcnc", "fanuc", CHANGE, inert=frozenset({"M6"})) == CHANGE.split("\n")
 
 

@@ -67,6 +67,14 @@ def test_an_exact_stop_has_no_equal_on_grbl():
     assert (lines, told) == (["G0 X1."], ["G61 is left out for grbl: 1"])
 
 
+def test_a_hint_that_is_pasted_over_a_list_keeps_what_stands_there():
+    blocks, more = "M48\nG61\nG0 X1.", frozenset({"M48"})
+    assert refused("fanuc", "grbl", blocks, drop=more).hint.startswith('drop = ["M48", "G61"]')
+    blocks, more = "M6\nG0 X1. Y0 Z0", {"M8": "M9"}
+    hint = refused("fanuc", "grbl", blocks, m_codes=more).hint
+    assert hint.startswith('m-codes = { M8 = "M9", M6 = "M0" }')
+
+
 DWELLS = [
     ("linuxcnc", "fanuc", "G4 P0.5", "G4 X0.5"),
     ("linuxcnc", "fanuc", "G4 P0.057", "G4 X0.057"),

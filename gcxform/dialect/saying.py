@@ -65,6 +65,17 @@ class Saying:
         """Whether the program changes its control."""
         return self.source is not self.target
 
+    def dropping(self, name: str) -> str:
+        """Return the setting that leaves this out as well, to be pasted over the one that is."""
+        said = ", ".join(f'"{each}"' for each in (*sorted(self.drop - {name}), name))
+        return f"drop = [{said}] in [output]"
+
+    def m_coding(self, name: str, text: str) -> str:
+        """Return the setting that replaces this code as well, to be pasted over the one that is."""
+        codes = {**self.m_codes, name: text}
+        said = ", ".join(f'{each} = "{codes[each]}"' for each in codes)
+        return f"m-codes = {{ {said} }} in [output]"
+
     def check(self) -> None:
         """Refuse what the user says of codes that cannot go. Raises UsageError."""
         for name in (*self.drop, *self.m_codes):

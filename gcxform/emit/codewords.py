@@ -93,7 +93,7 @@ class CodeWords:
         if code is not None and code.act in FRAMING:
             self.draft.refuse(word, what, put_before("offsets"))
         if code is not None and code.effect is Effect.INERT:
-            self.draft.refuse(word, what, f'drop = ["{name}"] in [output] leaves it out')
+            self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")
         if name in SPLINES:
             self.draft.refuse(word, what, put_before("segment", options="chord-error=2um"))
         rule = self.source.cycle_rule
@@ -150,8 +150,8 @@ class CodeWords:
         if code is None or code.group in ("spindle", "stop") or code.ends:
             return ""
         if code.group == "tool":
-            return f'm-codes = {{ {name} = "M0" }} in [output], where the operator changes it'
-        return f'drop = ["{name}"] in [output] leaves it out'
+            return f"{self.saying.m_coding(name, 'M0')}, where the operator changes it"
+        return f"{self.saying.dropping(name)} leaves it out"
 
     # --- what has to be stated ---
 

@@ -175,7 +175,8 @@ class Depending:
 
     def _inert(self, line: int) -> str:
         numbers = self._macro_codes(line).replace("M", "").replace(" ", ", ")
-        return f"if it runs none: inert-m = [{numbers}] in [control] of the machine file"
+        said = f"inert-m = [{numbers}] in [control] of the machine file"
+        return f"if it runs none: {said}, beside those that it has"
 
     def refuse_shared(self, copied: Flags) -> None:
         """Refuse to change words beside a code that may take them as arguments of a macro.

@@ -161,7 +161,9 @@ class TemplateWriter:
         elif not crossing or lasts_in(item, self.source, self.target):
             self.draft.literal(lead, self.text[item.start : item.end])
         elif lost := needs_assignment(item, self.source, self.target, self.manner.saying.drop):
-            hint = f'drop = ["{LASTING}"] in [output] leaves it out' if "lasts" in lost else ""
+            hint = (
+                f"{self.manner.saying.dropping(LASTING)} leaves it out" if "lasts" in lost else ""
+            )
             self.draft.refuse(item, lost, hint)
 
     def _check_same(self, item: Item, name: str) -> None:
@@ -188,7 +190,7 @@ class TemplateWriter:
         executed = self.source.text_rule.executes(text) and self.source is not self.target
         said = self.manner.saying.instead(text)
         if executed and said and not self.target.text_rule.executes(text):
-            hint = f'drop = ["{EXECUTED}"] in [output] makes it a comment that does nothing'
+            hint = f"{self.manner.saying.dropping(EXECUTED)} makes it a comment that does nothing"
             message = f"{self.target.name} does not execute this comment"
             self.draft.raise_at(item, message, hint if ABORT not in text.upper() else "")
         return comment_for(self.source, self.target, text)

@@ -107,4 +107,5 @@ def _still(written: Toolpath, context: PassContext) -> str:
     codes = context.target.m_codes
     lose = {f"M{number}" for number, code in codes.items() if code.loses_position}
     found = [event.what for event in written.events if event.what in lose]
-    return f'; or, if it moves none, inert = ["{found[0]}"] in [output]' if found else ""
+    said = f'inert = ["{found[0]}"] in [output], beside those that it has' if found else ""
+    return f"; or, if it moves none, {said}" if said else ""
