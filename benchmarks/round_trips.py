@@ -18,10 +18,12 @@ import itertools
 import re
 import sys
 from collections import Counter
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
+from msgspec import structs
 from translation import WAYS, offered, taken
 from translation import said as step_name
 
@@ -37,10 +39,14 @@ from gcxform.toolpath.path import Toolpath
 
 TARGETS = ("heidenhain", "siemens", "fagor")
 SOURCES = ("linuxcnc", "fanuc")
-MACRO = re.compile(rb"#|\bO\s*<|\bo[0-9<]|\[|M98|G65", re.IGNORECASE)
+MACRO = re.compile(rb"#|\bO\s*<|\bO[ \t]*[0-9]+[ \t]*[A-Z]|\[|M98|G65", re.IGNORECASE)
 COMMENT = re.compile(rb"\([^)]*\)|;.*")
-ENDS = {"M2", "M30", "G80", "G98", "G99", "G43", "G49", "G54"}
-"""What a language need not say: the end of a file, cycles that are moves, lengths with tools."""
+ENDS = {"M2", "M30", "G80", "G98", "G99", "G43", "G49", "G54", "G28", "BY", "G53"}
+"""What a language need not say: the end of a file, cycles that are moves, lengths with tools; and
+returns, which are moves to the same places in other words."""
+CONTROL = {"siemens": {"tool-length-axis": "Z"}, "fanuc": {"tool-length-alone": "shifts"}}
+"""What a user knows of each control: on a mill lengths stay along Z (SD42940), and none of them
+moves an axis by itself."""
 LONGEST = 200_000  # bytes
 SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|said as|a comment)")
 OUTPUT = ("drop", "inert")
@@ -67,20 +73,23 @@ def round_trip(job: Job, target: str, keep: Path | None = None, bare: bool = Fal
 
 def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
     registry = default_registry()
-    there, chain = registry.dialect(target), parse_chain("absolute", HERE, registry)
-    made = filled_in(job.dialect, job.path, "absolute", job.corpus)
+    known = {**CONTROL.get(job.dialect, {}), **CONTROL.get(target, {})}
+    made, chain = _made(job, known), parse_chain("absolute", HERE, registry)
+    there = registry.dialect(target)
     reading = made.machine_reading
+    bare = _bare(reading, known)
     way = replace(made, target=there, passes=(), numbers=NUMBERS)
     way, said = by_hints(way, job.corpus / job.path, ways)
-    there = with_inert(there, way.inert)
+    here, there = (
+        with_inert(kind, way.inert & {f"M{number}" for number in kind.m_codes})
+        for kind in (made.source, there)
+    )
     if keep is not None:
         (keep / job.path.replace("/", "__")).write_bytes(said.text)
-    anew = replace(made, source=there, passes=tuple(chain), numbers=NUMBERS)
-    _, back = by_hints(replace(anew, reading=_bare(reading)), said.text, ways)
-    programs = [
-        gx.Program(text, kind, reading if kind is made.source else _bare(reading))
-        for text, kind in ((job.text, made.source), (said.text, there), (back.text, made.source))
-    ]
+    anew = replace(made, source=there, target=here, passes=tuple(chain), numbers=NUMBERS)
+    _, back = by_hints(replace(anew, reading=bare), said.text, ways)
+    texts = (job.text, here, reading), (said.text, there, bare), (back.text, here, bare)
+    programs = [gx.Program(*each) for each in texts]
     for one, other in itertools.pairwise(programs):
         if why := apart(one, other, told(said, back)):
             return Outcome(job, "DIFFERS", f"{one.dialect.name} to {other.dialect.name}: {why}")
@@ -101,13 +110,26 @@ def by_hints(made: Pipeline, program: Path | bytes, ways: int) -> tuple[Pipeline
             added.append(step_name(step))
 
 
-def _bare(reading: Reading) -> Reading:
-    """Return what is known of the machine, without what holds for the language of the source.
+def _made(job: Job, known: Mapping[str, str]) -> Pipeline:
+    """Return the pipeline of a program, with what is known of the control that it is said to."""
+    made = filled_in(job.dialect, job.path, "absolute", job.corpus)
+    if made.machine is None:
+        return replace(made, reading=replace(made.reading, control=known))
+    control = {**made.machine.control, **known}
+    return replace(made, machine=structs.replace(made.machine, control=control))
 
-    The zero that is said by nothing is the same everywhere.
-    """
-    zeros = {code: zero for code, zero in reading.work_offsets.items() if code == "G54"}
-    return Reading(reading.start, work_offsets=zeros, tools=reading.tools, crosses=reading.crosses)
+
+def _bare(reading: Reading, control: Mapping[str, str]) -> Reading:
+    """Return what is known of the machine, without what holds for the language of the source."""
+    return Reading(
+        reading.start,
+        tools=reading.tools,
+        work_offsets=reading.work_offsets,
+        homes=reading.homes,
+        crosses=reading.crosses,
+        block_delete=reading.block_delete,
+        control=control,
+    )
 
 
 def told(*results: Result) -> set[str]:

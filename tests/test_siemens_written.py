@@ -78,6 +78,12 @@ def test_a_length_that_stays_in_force_is_said_before_the_next_move():
     assert found[-4:] == ["T3 M6", "M3 S100", "D1", "G0 X1 Y1 Z5"]
 
 
+def test_across_the_tool_its_length_need_not_be_said():
+    text = "T3 M6\nG43 H3\nG0 X1. Y2. Z3.\nG53 G0 Z0.\nT4 M6\nG0 X1. Y1.\nG43 H4\nG0 Z5."
+    lines = said(text)
+    assert lines[-5:] == ["SUPA G0 Z0 D0", "T4 M6", "G0 X1 Y1", "D1", "G0 Z5"]
+
+
 WRONG = [
     ("D1", "D0", "the length of a tool"),
     ("G55", "G56", "a work offset, or a length"),

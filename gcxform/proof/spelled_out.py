@@ -22,7 +22,8 @@ from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Floats
-from gcxform.toolpath.path import Event, Plane, Toolpath
+from gcxform.toolpath.frames import Frame
+from gcxform.toolpath.path import Event, Form, Plane, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 LENGTH = "the length of a tool counts from its change on, and here it should not"
@@ -37,6 +38,8 @@ COUNTS = ("tool-length", "frame")
 how often they are stated, and a move in coordinates of the machine does without them."""
 MACHINE = "machine"
 """The act of codes for a move in coordinates of the machine."""
+ALONG = 2
+"""The axis of tool lengths: Z."""
 Values = tuple[tuple[str, float], ...]
 
 
@@ -53,7 +56,8 @@ def check_spelled_out(
         message = f"{dialect.name} would not read what is written: {first.message}"
         raise InputError((Diagnostic("GX501", message, first.where, first.hint),)) from None
     told = blocks.splitlines(), found.text.splitlines()
-    for row, what in (*_differences(wanted, now, dialect), *_places(wanted, now, dialect, *told)):
+    wrong = (*_differences(wanted, now, dialect, *told), *_places(wanted, now, dialect, *told))
+    for row, what in wrong:
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)
         text = found.lines[line - 1]
         where = Location(found.name, line, 1, text, max(1, len(text)))
@@ -68,13 +72,18 @@ def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> T
     return interpreter.interpret(reader.read(text), reader.table).path
 
 
-def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[tuple[int, str]]:
+def _differences(
+    a: Toolpath, b: Toolpath, dialect: type[Dialect], one: list[bytes], other: list[bytes]
+) -> Iterator[tuple[int, str]]:
     """Yield the first row of each thing that differs, and what it is."""
     if len(a) != len(b):
         yield min(len(a), len(b)), f"{len(a)} moves are {len(b)}"
         return
     was, is_ = (np.array([f.tool for f in path.frames])[path.frame] for path in (a, b))
-    counts = _frames(a, dialect) != ""
+    frames = _frames(a, dialect), _frames(b, dialect)
+    counts = (frames[0] == "") != (frames[1] == "")
+    rows = np.flatnonzero((frames[0] != frames[1]) & ~counts)
+    counts[rows] = [_counts(row, a, b, one, other) for row in rows.tolist()]
     yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
@@ -85,11 +94,11 @@ def _differences(a: Toolpath, b: Toolpath, dialect: type[Dialect]) -> Iterator[t
     yield from _first(~_same(a.centre, b.centre, by_size[:, None]).all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
-    yield from _first(_frames(a, dialect) != _frames(b, dialect), "a work offset, or a length")
+    yield from _first(counts, "a work offset, or a length")
     acts = _acts(a, dialect), _acts(b, dialect)
-    for one, other in zip(*acts, strict=False):
-        if one != other and not _same_side(one, other, dialect):
-            yield min(other[0], len(b)), f"{one[1]} is {other[1]}"
+    for act, there in zip(*acts, strict=False):
+        if act != there and not _same_side(act, there, dialect):
+            yield min(there[0], len(b)), f"{act[1]} is {there[1]}"
     if len(acts[0]) != len(acts[1]):
         yield len(b), "events are lost, or there are more"
 
@@ -104,6 +113,27 @@ def _same_side(
     code = dialect.codes.get(one[1])
     side = code is not None and code.group == "cutter-comp"
     return side and not one[2] and one[:2] == other[:2]
+
+
+def _counts(row: int, a: Toolpath, b: Toolpath, one: list[bytes], other: list[bytes]) -> bool:
+    """Whether words of a row, whose frames differ, count otherwise.
+
+    A tool length that is along an axis which a plain block does not name counts in none of them.
+    """
+    words = {*_words(one[a.source[row]]), *_words(other[b.source[row]])}
+    named = [k for k, axis in enumerate(a.axes) if axis in words]
+    frames = a.frames[a.frame[row]], b.frames[b.frame[row]]
+    return a.form[row] != Form.PLAIN or len({_of(each, named) for each in frames}) > 1
+
+
+def _of(frame: Frame, axes: list[int]) -> str:
+    """Return what of a frame counts in a block that names some axes; all of it where it turns."""
+    if frame.matrix is not None or frame.following or frame.polar:
+        return repr(frame)
+    tool = [frame.tool[k] for k in axes if k < len(frame.tool)]
+    of = [(frame.shift[k], frame.origin[k]) for k in axes]
+    called = frame.called and ALONG in axes
+    return repr((frame.work, frame.diameter, frame.following, tool, of, called))
 
 
 def _places(

@@ -95,24 +95,24 @@ MUTATIONS = (
     Mutation(
         "siemens written: no length is said behind a tool change",
         LINES,
-        'moves = self.waits and not values.keys().isdisjoint("XYZIJKR")',
-        "moves = False",
+        'counts = "Z" in values or not {"G41", "G42"}.isdisjoint(names)',
+        "counts = False",
         "tests/test_siemens_written.py::"
         "test_a_length_that_stays_in_force_is_said_before_the_next_move",
     ),
     Mutation(
         "siemens written: behind SUPA there is no length",
         LINES,
-        "if self.length and self.length != NO_LENGTH:",
-        "if False:",
+        "self.waits = bool(self.length)\n",
+        "self.waits = False\n",
         "tests/test_siemens_written.py::"
         "test_a_length_ends_for_a_move_in_the_machine_and_is_in_force_again",
     ),
     Mutation(
         "written in a language: by which offset words count is not compared",
         SPELLED,
-        "_frames(a, dialect) != _frames(b, dialect)",
-        "_frames(a, dialect) != _frames(a, dialect)",
+        "np.flatnonzero((frames[0] != frames[1]) & ~counts)",
+        "np.flatnonzero((frames[0] != frames[0]) & ~counts)",
         f"{COMPARED}[G55-G56-a work offset, or a length]",
     ),
     Mutation(
@@ -209,9 +209,37 @@ MUTATIONS = (
     Mutation(
         "siemens: which edge is in force behind M6 is not asked",
         MOVES,
-        "if self.changed and self.edge is None:",
+        "if self.changed and self.edge is None and self._counts_length(line):",
         "if self.changed and self.edge is None and not self.tool:",
         f"{CASES}[dialects/siemens/edge-not-said]",
+    ),
+    Mutation(
+        "siemens: a length is across the plane in every plane",
+        MOVES,
+        'across = self.plane == "XY" or',
+        "across = self.plane or",
+        f"{CASES}[dialects/siemens/edge-in-another-plane]",
+    ),
+    Mutation(
+        "siemens: a length is along Z in a frame that tilts",
+        MOVES,
+        "return across and self.keeps_radii and not self.following",
+        "return across and not self.following",
+        f"{CASES}[dialects/siemens/edge-in-a-tilted-frame]",
+    ),
+    Mutation(
+        "spelled: a length that counts in no word counts in all",
+        SPELLED,
+        "named = [k for k, axis in enumerate(a.axes) if axis in words]",
+        "named = [*range(len(a.axes))]",
+        "tests/test_siemens_written.py::test_across_the_tool_its_length_need_not_be_said",
+    ),
+    Mutation(
+        "spelled: no length counts in any word",
+        SPELLED,
+        "named = [k for k, axis in enumerate(a.axes) if axis in words]",
+        "named = []",
+        COMPARED,
     ),
     Mutation(
         "siemens: the tool of the last T is the one in the spindle",

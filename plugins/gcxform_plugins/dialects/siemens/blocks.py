@@ -179,7 +179,8 @@ class Blocks(Framing):
                 self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
             yield f"T{line.tool} M6" if line.tool else "M6"
             self.tool, self.changed, self.edge = self.waiting, True, None
-            if CHANGE not in self.reading.inert_m:
+            moves = self.dialect.m_codes[CHANGE].loses_position
+            if moves and CHANGE not in self.reading.inert_m:
                 self.place.lose(LINEAR + ROTARY)
             setting = self.reading.control.get("edge-after-tool-change")
             if line.edge is None and setting in (0, 1):
@@ -199,7 +200,7 @@ class Blocks(Framing):
             message = "D1 of the tool in the spindle, and which that is is not known"
             self.refuse(message, item, "write T and M6 before")
         self.edge = number
-        self.place.lose(LINEAR)
+        self.place.lose("Z" if self.length_is_along_z else LINEAR)
         yield f"G43 H{self.tool}" if number == "1" else "G49"
 
     # --- frames ---

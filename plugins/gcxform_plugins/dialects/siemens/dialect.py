@@ -42,7 +42,8 @@ stands, with all that is lost behind it.
 | `T5`, M6, `D1` | the tool is chosen, changed, its length in force: `T5 M6`, `G43 H5` | W1 13 |
 | `D0` | no length: `G49`; D2 and more: refused | W1 13 |
 | D1 in G18, G19 | along Y, X: refused without `[control] tool-length-axis = "Z"` (SD42940) | [K] |
-| between M6 and D | MD20270: refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
+| Z between M6 and D | refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
+| those of X and Y | read, in G17: length 1 is along Z; steps behind D as well | W1 13 |
 | T without M6 | MD22550 decides whether it changes the tool: refused | W1 33 |
 | `T="NAME"` | refused | |
 | G41, G42 | the radius of the tool of D1; settings decide how contours are met | W1 13 |

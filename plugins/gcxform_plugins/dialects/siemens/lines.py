@@ -42,7 +42,7 @@ class Lines(gx.Speller):
     tool      that of the last T, and `in_spindle`
     length    the number of the one in force, "0" for none, nothing where none has been said: behind
               M6 the machine file then says which edge is in force, or nothing may move
-    waits     M6 has been, and D has not yet: it is said before the next move, or by the next code
+    waits     M6 or SUPA has been, and D has not yet: it is said before Z moves, or by the next code
     """
 
     comment = "; "
@@ -89,7 +89,10 @@ class Lines(gx.Speller):
     # --- tools ---
 
     def _tooled(self, number: str, names: list[str], values: dict[str, str]) -> Iterator[str]:
-        """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError."""
+        """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError.
+
+        D is said where a word counts by it, and not before: in Z, or for a radius.
+        """
         if "T" in values:
             self.tool = text_of(Decimal(values["T"]))
         if "M6" in names:
@@ -103,8 +106,8 @@ class Lines(gx.Speller):
             self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
         elif "G49" in names:
             self.length = NO_LENGTH
-        moves = self.waits and not values.keys().isdisjoint("XYZIJKR")
-        if moves or not {"G43", "G49"}.isdisjoint(names):
+        counts = "Z" in values or not {"G41", "G42"}.isdisjoint(names)
+        if (self.waits and counts) or not {"G43", "G49"}.isdisjoint(names):
             yield self._edge
 
     @property
@@ -143,10 +146,8 @@ class Lines(gx.Speller):
     def _in_machine(
         self, number: str, names: list[str], words: list[tuple[str, str]]
     ) -> Iterator[str]:
-        """Yield SUPA, which asks for D0, and the length again that was in force."""
+        """Yield SUPA, which asks for D0; the length that was in force waits."""
         rest = [each for each in words if each[0] != "N" and each != ("G", "53")]
         said = " ".join(self._words(rest, dict(rest)))
         yield f"{number}SUPA {said} D0"
-        self.waits = False
-        if self.length and self.length != NO_LENGTH:
-            yield self._edge
+        self.waits = bool(self.length)

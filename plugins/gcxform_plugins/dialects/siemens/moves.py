@@ -103,12 +103,24 @@ class Moves(Statements):
         item = next((line.axes[a][2] for a in LINEAR if a in line.axes), None)
         if item is None:
             return
-        if self.changed and self.edge is None:
+        if self.changed and self.edge is None and self._counts_length(line):
             message = "behind M6 a setting of the control decides which edge is in force (MD20270)"
             self.refuse(message, item, EDGE)
         if self.waiting is not None and not self.changed:
             message = "T without M6: a setting decides whether it changes the tool (MD22550)"
             self.refuse(message, item, "write M6 behind T")
+
+    def _counts_length(self, line: Line) -> bool:
+        return "Z" in line.axes or not self.length_is_along_z
+
+    @property
+    def length_is_along_z(self) -> bool:
+        """Whether the length of a tool counts in words of Z alone, in the plane that is in force.
+
+        Length 1 of a milling tool is along the axis across the plane (Tool offset 11/2006, 2.5).
+        """
+        across = self.plane == "XY" or self.reading.control.get("tool-length-axis") == "Z"
+        return across and self.keeps_radii and not self.following
 
     def _check_turning(self, line: Line) -> None:
         """Refuse cuts that turn axes where the tool axis may take another way than the angles."""
