@@ -22,6 +22,7 @@ ARITHMETIC = "plugins/gcxform_plugins/dialects/siemens/arithmetic.py"
 RANDOM = "tests/test_siemens.py::test_it_reads_what_the_reference_reads"
 CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
+CONTOURS = "plugins/gcxform_plugins/dialects/siemens/contours.py"
 POLAR = "plugins/gcxform_plugins/dialects/siemens/polar.py"
 LINES = "plugins/gcxform_plugins/dialects/siemens/lines.py"
 SPELLED = "gcxform/proof/spelled_out.py"
@@ -29,6 +30,111 @@ WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
 MUTATIONS = (
+    Mutation(
+        "siemens: a chamfer's own length is along its lines",
+        CONTOURS,
+        '"CHF": 0.5 / math.sin(angle / 2)',
+        '"CHF": 1.0',
+        f"{CASES}[dialects/siemens/chamfers]",
+    ),
+    Mutation(
+        "siemens: a rounding touches its lines elsewhere",
+        CONTOURS,
+        '"RND": 1 / math.tan(angle / 2)',
+        '"RND": math.tan(angle / 2) / 2',
+        f"{CASES}[dialects/siemens/rounding]",
+    ),
+    Mutation(
+        "siemens: a rounding turns the other way",
+        CONTOURS,
+        'return Corner(first, second, centre, "3" if left > 0 else "2")',
+        'return Corner(first, second, centre, "2" if left > 0 else "3")',
+        f"{CASES}[dialects/siemens/rounding]",
+    ),
+    Mutation(
+        "siemens: steps count from behind a corner",
+        CONTOURS,
+        "            self.place.absolute(axis, _text(value))\n        self.begins, self.along",
+        "            pass\n        self.begins, self.along",
+        f"{CASES}[dialects/siemens/rounding]",
+    ),
+    Mutation(
+        "siemens: a rounding may be longer than its line",
+        CONTOURS,
+        "if size <= 0 or back > min(sizes) + NONE:",
+        "if size <= 0:",
+        f"{CASES}[dialects/siemens/rounding-too-large]",
+    ),
+    Mutation(
+        "siemens: a line begins in the corner that was cut",
+        CONTOURS,
+        "start = self.begins[0] if self.begins is not None else self._stands()",
+        "start = self._stands()",
+        f"{CASES}[dialects/siemens/rounding-too-large]",
+    ),
+    Mutation(
+        "siemens: the feed of a corner is that before it",
+        CONTOURS,
+        'if self._speeds(number) and "FRC" not in line.corner:',
+        "if False:",
+        f"{CASES}[dialects/siemens/corner-of-two-feeds]",
+    ),
+    Mutation(
+        "siemens: FRC stays in force behind its corner",
+        CONTOURS,
+        '        if feed:\n            yield f"F{line.feed}"\n',
+        "",
+        f"{CASES}[dialects/siemens/chamfers]",
+    ),
+    Mutation(
+        "siemens: a corner is cut before a rapid",
+        CONTOURS,
+        '(name == "G" and item.numbers[0] in ("1", "01"))',
+        'name == "G"',
+        f"{CASES}[dialects/siemens/corner-before-a-rapid]",
+    ),
+    Mutation(
+        "siemens: RNDM ends in the line before",
+        CONTOURS,
+        'self.rounding = number if Decimal(number) else ""',
+        'self.rounding = ""',
+        f"{CASES}[dialects/siemens/rounding-at-all-corners]",
+    ),
+    Mutation(
+        "siemens: CT goes on behind a rapid",
+        CONTOURS,
+        'if start is None or end is None or motion == "0" or',
+        "if start is None or end is None or",
+        f"{CASES}[dialects/siemens/tangential-from-nowhere]",
+    ),
+    Mutation(
+        "siemens: CT turns the other way",
+        CONTOURS,
+        'return ("3" if radius > 0 else "2"), {}, [',
+        'return ("2" if radius > 0 else "3"), {}, [',
+        f"{CASES}[dialects/siemens/tangential]",
+    ),
+    Mutation(
+        "siemens: an arc ends against its direction",
+        CONTOURS,
+        'left = 1.0 if self.arc[0] == "3" else -1.0',
+        'left = -1.0 if self.arc[0] == "3" else 1.0',
+        f"{CASES}[dialects/siemens/tangential]",
+    ),
+    Mutation(
+        "siemens: the centre of an arc by its radius is on the other side",
+        CONTOURS,
+        'left = 1.0 if (radius > 0) == (code == "3") else -1.0',
+        'left = -1.0 if (radius > 0) == (code == "3") else 1.0',
+        f"{CASES}[dialects/siemens/tangential-by-a-radius]",
+    ),
+    Mutation(
+        "siemens: CT looks at lines that were passed",
+        CONTOURS,
+        "return any(TANGENT.search(line) for line in self.lines)",
+        "return False",
+        f"{CASES}[dialects/siemens/tangential-behind-plain-lines]",
+    ),
     Mutation(
         "siemens: a step of a loop stays what it was the first time",
         "gcxform/emit/respelling.py",

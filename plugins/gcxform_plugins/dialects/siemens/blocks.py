@@ -11,9 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
 from gcxform_plugins.dialects.siemens.frames import Frame
-from gcxform_plugins.dialects.siemens.framing import Framing, rounded
+from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
@@ -23,7 +24,7 @@ CHANGE = 6
 """M6, which moves no axis where `inert-m` of the machine file says so."""
 
 
-class Blocks(Framing):
+class Blocks(Contours):
     """Turns the lines of a SINUMERIK into blocks of words.
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
@@ -48,6 +49,8 @@ class Blocks(Framing):
         for item in items:
             self.read.get(item.kind, self.unread)(line, item)
         self._check_feed(line)
+        if line.corner or (self.rounding and line.axes):
+            self.take_corner(line)
         try:
             made = [block for block in self._made(line) if block]
         except PlaceError as error:
@@ -70,6 +73,7 @@ class Blocks(Framing):
         """Note the plain lines before this one."""
         if self.line > self.last + 1:
             self.place.passed.append(range(self.last + 1, self.line))
+            self.along = None
         self.last = self.place.line = self.line
 
     def _takes_plain_lines(self) -> bool:
@@ -79,6 +83,8 @@ class Blocks(Framing):
         if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
             return False
         if self.feed_open or self.length_is_elsewhere or self.frame != Frame():
+            return False
+        if self.has_corner or self.has_tangents:
             return False
         if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
             return False
@@ -107,6 +113,7 @@ class Blocks(Framing):
             yield self._in_machine(line)
             return
         yield self.block_of(line)
+        yield from line.behind
         if self.drilling is not None and (line.axes or line.centres):
             yield from self._holes(self.drilling)
 

@@ -24,7 +24,11 @@ stands, with all that is lost behind it.
 | G110, G111, G112 | the pole, from the last place, from zero, from the pole; else zero | F 118 |
 | `AP=`, `RP=` | angle, radius; the pole is the centre of arcs; in G91: refused | 808D 55 |
 | `CIP` | an arc over a point; refused in G91, and outside of the plane in force | T 91 |
-| `CT` | refused | |
+| `CT` | the arc along the element before it, a line or an arc in the plane | PM 201 |
+| `RND=`, `RNDM=` | an arc that touches both lines at the corner to which the line leads | F 194 |
+| `CHR=`, `CHF=` | a chamfer: so far along both lines; itself so long | F 194 |
+| at arcs, G0, other lines than of plain words | refused | |
+| F in the line behind a corner | whose feed it has is a setting: refused, but for FRC= | [K] |
 | start and end radius | may differ by 0.01 mm (MD21000) | [K] |
 | `G4 F` | seconds, in a block of its own; `G4 S`: refused | [K] |
 | G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |

@@ -11,6 +11,8 @@ FRAMES = frozenset(
     way + name for way in ("", "A") for name in ("TRANS", "ROT", "ROTS", "SCALE", "MIRROR")
 )
 """Instructions for the frame of the program, new ones and those that add to it."""
+CORNERS = frozenset(("RND", "RNDM", "CHR", "CHF", "FRC"))
+"""What cuts the corner to which a line leads, and how fast."""
 
 
 @dataclass(slots=True)
@@ -23,6 +25,7 @@ class Line:
     axes      way (nothing, AC, IC, DC, ACP, ACN), number and item by letter; centres, middles: the
               same of I J K, and I1 J1 K1
     named     CR, TURN, AR, AP, RP: number and item
+    corner    RND, RNDM, CHR, CHF, FRC: number and item;  behind: the blocks that cut a corner
     others    S and M words
     alone     what stands for nothing, and in a block of its own
     act       what follows the tip, or stops: M128, M129
@@ -35,6 +38,8 @@ class Line:
     centres: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
     middles: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
     named: dict[str, tuple[str, gx.Item]] = field(default_factory=dict)
+    corner: dict[str, tuple[str, gx.Item]] = field(default_factory=dict)
+    behind: list[str] = field(default_factory=list)
     feed: str = ""
     others: list[str] = field(default_factory=list)
     tool: str = ""

@@ -15,6 +15,7 @@ EDGE = (
     "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
 )
 ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
+ARCS = ("2", "3", "CIP", "CT")
 LINEAR_WAY = (
     'write ORIAXES and ORIMKS; or say orientation-path = "angles" in [control], if it is so'
 )
@@ -60,13 +61,13 @@ class Moves(Statements):
         if self.following and self.motion != "0":
             self._check_turning(line)
         motion, computed, arc = self.motion, dict[str, float](), list[str]()
-        if motion in ("2", "3", "CIP"):
+        if motion in ARCS:
             motion, computed, arc = self._arc(line)
         elif line.centres or line.named or line.middles:
             self.refuse("words of an arc in a block that is none", self.first_of(line))
         steps, words = self._words(line, computed)
         words = self.outside(steps, words)
-        if self.motion in ("2", "3", "CIP"):
+        if self.motion in ARCS and motion != "1":
             motion, arc = self.arc_outside(motion, arc)
         codes = [*self.motion_code(line, motion), *self.distance_code(line, steps)]
         return " ".join([*line.codes, *codes, *words, *arc, *rest_of(line)])

@@ -10,7 +10,7 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import cycles as cycles
 from gcxform_plugins.dialects.siemens.frames import Frame
-from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
+from gcxform_plugins.dialects.siemens.line import ABSOLUTE, CORNERS, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
 
 MODAL = {
@@ -311,6 +311,9 @@ class Statements(gx.Translator):
         if name in ("CR", "AR", "TURN", "RPL", "AP", "RP"):
             self._once(line, item, name)
             line.named[name] = (item.numbers[0], item)
+        elif name in CORNERS and not self.reading.stays:
+            self._once(line, item, name)
+            line.corner[name] = (item.numbers[0], item)
         elif name not in TOLERANCES:
             self.refuse(f"{name}= is not read", item)
 
@@ -326,7 +329,7 @@ class Statements(gx.Translator):
             line.alone = item
         elif name == "SUPA":
             line.machine = item
-        elif name == "CIP":
+        elif name == "CIP" or (name == "CT" and not self.reading.stays):
             self._motion_code(line, item, name)
         elif name in ("TRAORI", "TRAFOOF"):
             self._switched(line, item, name)

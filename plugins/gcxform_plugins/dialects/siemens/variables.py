@@ -20,7 +20,9 @@ from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.structure import Structure, names_set
 
-WORDS = re.compile(r"[XYZABCIJKFSTDM]|[IJK]1|CR|RPL|AR|AP|RP|TURN|ADIS|ADISPOS|CTOL|OTOL|ATOL")
+WORDS = re.compile(
+    r"[XYZABCIJKFSTDM]|[IJK]1|CR|RPL|AR|AP|RP|TURN|RNDM?|CH[RF]|FRC|ADIS|ADISPOS|CTOL|OTOL|ATOL"
+)
 POSITIONS = frozenset(("$P_EP", "$AA_IW"))
 AXES = frozenset(LINEAR + ROTARY)
 NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
