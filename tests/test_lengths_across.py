@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import across_kit
@@ -36,6 +37,19 @@ def test_a_length_that_is_not_known_is_asked_for():
     found = refused("haas", "grbl", "G43 H7 G0 Z5.")
     assert (found.code, found.where.line) == ("GX501", 2)
     assert "[tool.7]" in found.hint
+
+
+HOME = replace(
+    START, homes={"G28": {"Z": 400.0}}, work_offsets={"G54": {"X": 0.0, "Y": 0.0, "Z": 100.0}}
+)
+
+
+def test_a_length_that_the_source_may_have_let_go_of_is_said_again():
+    blocks = "G43 H1 G0 Z5.\nG91 G28 Z0.\nG90 {}G0 Z20."
+    found = across_kit.refused(HOME, "haas", "fanuc", blocks.format(""))
+    assert (found.code, found.where.line) == ("GX509", 4)
+    again = blocks.format("G43 H1 ")
+    assert across_kit.said(HOME, "haas", "fanuc", again) == again.split("\n")
 
 
 CHANGE = "G0 X1. Y2. Z5.\nT1 M6\nG0 X5.\nG1 Z1. F100."

@@ -152,7 +152,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Behind one of them the control that is written for stands where the program does not "
         "say, and a block that names only some axes moves from there. Program all linear axes "
         "between that code and this block, where the way is clear. If the code moves nothing on "
-        "that machine, a tool change by hand for one, `inert` in [output] says so.",
+        "that machine, a tool change by hand for one, `inert` in [output] says so. So it is with "
+        "a tool length that only one of them lets go of behind G28: say it again.",
     ),
     "GX510": (
         "The path is farther off than the budget",

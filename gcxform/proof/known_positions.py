@@ -89,7 +89,7 @@ def lost_in_target(
     was = np.isfinite(trace.before.start[owner, :3]) & begins[:, None]
     lost[:, :3] |= np.isnan(written.start[:, :3]) & was
     if not lost.any():
-        return None
+        return _lengthened_otherwise(trace, written, owner, context, file)
     row = int(np.argmax(lost.any(axis=1)))
     axis = written.axes[int(np.argmax(lost[row]))]
     name, line = context.target.name, trace.line_of(int(written.source[row]))
@@ -99,6 +99,30 @@ def lost_in_target(
         Location(file, line + 1),
         f"program {axis}, with the way clear, behind the last code that moves it on {name}"
         + _still(written, context),
+    )
+
+
+def _lengthened_otherwise(
+    trace: Trace, written: Toolpath, owner: Ints, context: PassContext, file: str
+) -> InputError | None:
+    """Return what to raise if the target has a tool length of which the source knows nothing.
+
+    Behind G28 the control of the source may have let go of one that is still in force there.
+    """
+    open_here, open_there = (
+        np.array([np.isnan(frame.tool).any() for frame in path.frames])[path.frame]
+        for path in (trace.before, written)
+    )
+    wrong = open_here[owner] & ~open_there & np.isfinite(trace.before.end[owner, 2])
+    if not wrong.any():
+        return None
+    source, target = context.source.name, context.target.name
+    line = trace.line_of(int(written.source[int(np.argmax(wrong))]))
+    return InputError.one(
+        "GX509",
+        f"which tool length is in force here {target} knows, and {source} may have another",
+        Location(file, line + 1),
+        "say the length again before this block, G43 with its H",
     )
 
 

@@ -48,6 +48,13 @@ MUTATIONS = (
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
+        "proof: a tool length that the source may have let go of is the target's",
+        "gcxform/proof/known_positions.py",
+        "wrong = open_here[owner] & ~open_there & np.isfinite(trace.before.end[owner, 2])",
+        "wrong = open_here[owner] & open_there",
+        "tests/test_lengths_across.py",
+    ),
+    Mutation(
         "deviation: the sense of arcs is ignored",
         "gcxform/deviations/deviation.py",
         "(after.sense[rows] == self.sense)",
