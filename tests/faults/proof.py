@@ -78,8 +78,8 @@ MUTATIONS = (
     Mutation(
         "proof: an axis that only the target loses is a bug",
         "gcxform/proof/known_positions.py",
-        "    if not lost.any():\n        return None",
-        "    if len(lost):\n        return None",
+        "    if not lost.any():\n        return _lengthened",
+        "    if len(lost):\n        return _lengthened",
         CORPUS,
     ),
     Mutation(
