@@ -29,6 +29,33 @@ def test_what_is_no_code_and_may_be_left_out(block, name, expected):
     assert said("linuxcnc", "fanuc", blocks, drop=frozenset({name})) == expected
 
 
+CODES = [
+    ("linuxcnc", "fanuc", "M19 R90", "M19"),
+    ("linuxcnc", "grbl", "M61 Q3", "M61"),
+    ("haas", "fanuc", "#10000=2", "#"),
+]
+
+
+@pytest.mark.parametrize(("source", "target", "block", "name"), CODES)
+def test_what_moves_nothing_may_be_left_out(source, target, block, name):
+    blocks = f"{block}\nG0 X1."
+    assert f'drop = ["{name}"] in [output]' in refused(source, target, blocks).hint
+    assert said(source, target, blocks, drop=frozenset({name})) == ["G0 X1."]
+
+
+@pytest.mark.parametrize("code", ["M3", "M4", "M5"])
+def test_no_hint_leaves_out_what_turns_the_spindle(code):
+    found = refused("linuxcnc", "fanuc", f"S500 {code} $0\nG0 X1.")
+    assert "drop" not in found.hint
+
+
+def test_names_of_programs_are_spelled_as_the_control_has_them():
+    named = "O<Part>\nG0 X1."
+    assert said("linuxcnc", "fanuc", named) == ["<Part>", "G0 X1."]
+    assert said("fanuc", "linuxcnc", "<Part>\nG0 X1.") == named.split("\n")
+    assert said("linuxcnc", "grbl", named) == ["G0 X1."]
+
+
 def test_a_comment_that_ends_the_program_stays():
     found = refused("linuxcnc", "fanuc", "(ABORT, X)\nG0 X1.", drop=frozenset({"()"}))
     assert (found.code, found.hint) == ("GX501", "")

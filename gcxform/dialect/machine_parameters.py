@@ -13,7 +13,8 @@ class MachineParameters:
 
     outputs    those that a program may set without any effect on positions
     alarm      the one that stops the control with an alarm: nothing behind it is executed
-    counters   those of them that only count, so that nothing is done when they are set
+    counters   those of them that only count or only keep what they are given, so that nothing is
+               done when they are set
     lengths    entries of the table of tools, a hundred or two for each kind of number
     zeros      entries of the table of work offsets
     aliases    numbers that are other names of a program's own parameters, and how much higher

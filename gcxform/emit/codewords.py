@@ -33,6 +33,11 @@ EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPI
 """Cycles whose moves can be written one by one."""
 
 
+TURNS = frozenset({"M3", "M4", "M5"})
+SET_TOOL = "set-tool"
+"""The act of a code that says which tool is in the spindle, and changes none."""
+
+
 class CodeWords:
     """Writes the codes of one piece of a block into its draft."""
 
@@ -147,9 +152,9 @@ class CodeWords:
 
     def _way_out(self, name: str, code: MCode | None) -> str:
         """Return how the user says what takes the place of an M code."""
-        if code is None or code.group in ("spindle", "stop") or code.ends:
+        if code is None or name in TURNS or code.group == "stop" or code.ends:
             return ""
-        if code.group == "tool":
+        if code.group == "tool" and code.act != SET_TOOL:
             return f"{self.saying.m_coding(name, 'M0')}, where the operator changes it"
         return f"{self.saying.dropping(name)} leaves it out"
 

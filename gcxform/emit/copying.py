@@ -40,7 +40,7 @@ IN_PLACE = (Form.NURBS, Form.PASSES, Form.TILTED)
 """Forms that begin where the tool stands, and have no word for it."""
 HINTS = {
     Form.CYCLE: put_before("cycles"),
-    Form.SPLINE: put_before("segment"),
+    Form.SPLINE: put_before("segment", options="chord-error=2um"),
     Form.BLIND: "program its axes in G90 before, so that it is known where they stand",
     Form.PROBE: "leave the pass out that changes its coordinates: what it finds counts in them",
 }

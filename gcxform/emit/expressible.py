@@ -127,6 +127,12 @@ def is_foreign(item: Item, source: type[Dialect], target: type[Dialect]) -> bool
     return item.kind.startswith("program") and not target.program_rule.has_program_number
 
 
+def program_named(text: str, target: type[Dialect]) -> str:
+    """Return the name of a program, `O<name>` or `<name>`, as a control has it."""
+    bare = text.lstrip("Oo \t")
+    return f"O{bare}" if target.flow_rule.language == "o-words" else bare
+
+
 def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
     """Return the block that does what a cycle does between its moves; None if there is none."""
     if event.what in target.codes:

@@ -21,6 +21,7 @@ from gcxform.emit.expressible import (
     left_out,
     needs_assignment,
     own_gap,
+    program_named,
     unsaid_words,
 )
 from gcxform.emit.fields import (
@@ -208,7 +209,9 @@ class TemplateWriter:
         elif is_foreign(item, self.source, self.target):
             return
         if item.kind == "block_delete" or self.key.role not in (Role.MIDDLE, Role.LAST):
-            self.draft.literal(lead, self.text[item.start : item.end])
+            text = self.text[item.start : item.end]
+            crosses = self.source is not self.target and item.kind == "program_name"
+            self.draft.literal(lead, program_named(text, self.target) if crosses else text)
 
     # --- words ---
 

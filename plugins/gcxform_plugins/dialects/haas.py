@@ -74,6 +74,7 @@ ARITHMETIC = replace(
     machine=replace(
         OWN,
         outputs=(*OWN.outputs, range(10000, 11000)),
+        counters=(*OWN.counters, range(10000, 11000)),
         lengths=OWN.lengths[:4],
         aliases=((range(10100, 11000), 10_000),),
         signals=(*OWN.signals, range(1601, 2001)),
