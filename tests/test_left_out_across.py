@@ -43,12 +43,6 @@ def test_what_moves_nothing_may_be_left_out(source, target, block, name):
     assert said(source, target, blocks, drop=frozenset({name})) == ["G0 X1."]
 
 
-@pytest.mark.parametrize("code", ["M3", "M4", "M5"])
-def test_no_hint_leaves_out_what_turns_the_spindle(code):
-    found = refused("linuxcnc", "fanuc", f"S500 {code} $0\nG0 X1.")
-    assert "drop" not in found.hint
-
-
 def test_names_of_programs_are_spelled_as_the_control_has_them():
     named = "O<Part>\nG0 X1."
     assert said("linuxcnc", "fanuc", named) == ["<Part>", "G0 X1."]

@@ -95,13 +95,6 @@ MUTATIONS = (
         HERE,
     ),
     Mutation(
-        "saying: the spindle's own codes may be left out by a hint",
-        "gcxform/emit/codewords.py",
-        'if code is None or name in TURNS or code.group == "stop" or code.ends:',
-        'if code is None or code.group == "stop" or code.ends:',
-        "tests/test_left_out_across.py",
-    ),
-    Mutation(
         "saying: a program's name stays spelled as it was",
         "gcxform/emit/expressible.py",
         'return f"O{bare}" if target.flow_rule.language == "o-words" else bare',
