@@ -10,7 +10,7 @@ base, or with methods, that need more care are left to that.
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import FrozenInstanceError, fields
+from dataclasses import MISSING, Field, FrozenInstanceError, fields
 from types import FunctionType
 from typing import TYPE_CHECKING, Any
 
@@ -58,13 +58,63 @@ class _Later:
 
 
 def _compiled(made: type, name: str, frozen: bool) -> FunctionType:
-    """Return a method as the standard decorator writes it, for a class on top of the given one."""
+    """Return a method as the standard decorator writes it, for a class on top of the given one.
+
+    That of a frozen class comes with two more methods, so `__init__`, the one that most classes
+    need, is written here.
+    """
+    if name == "__init__":
+        return _init(made, frozen)
     told = {key: getattr(made, key) for key in ("__module__", "__qualname__", "__doc__")}
     above = type(made)(made.__name__, (made,), told)
-    wanted = {"init": name == "__init__", "repr": name == "__repr__"}
-    dataclasses.dataclass(above, eq=name in ("__eq__", "__hash__"), frozen=frozen, **wanted)
+    compared = name in ("__eq__", "__hash__")
+    dataclasses.dataclass(above, init=False, repr=not compared, eq=compared, frozen=frozen)
     method: FunctionType = vars(above)[name]
     return method
+
+
+class Factory:
+    """Stands where a value was not given that a factory makes."""
+
+    def __repr__(self) -> str:
+        return "<factory>"
+
+
+FACTORY = Factory()
+
+
+def _init(made: Any, frozen: bool) -> FunctionType:
+    """Return `__init__` of a dataclass."""
+    known = {"__name__": made.__module__, "_put": object.__setattr__, "_FACTORY": FACTORY}
+    given, by_name, body = ["self"], ["*"], []
+    for each in fields(made):
+        parameter, value = _given(each, known)
+        if each.init:
+            (by_name if each.kw_only else given).append(parameter)
+        if value:
+            name = each.name
+            body.append(f"_put(self, {name!r}, {value})" if frozen else f"self.{name} = {value}")
+    body += ["self.__post_init__()"] if hasattr(made, "__post_init__") else []
+    head = ", ".join(given + (by_name if len(by_name) > 1 else []))
+    exec(f"def __init__({head}):\n  " + "\n  ".join(body or ["pass"]), known)
+    method: FunctionType = known["__init__"]
+    method.__qualname__ = f"{made.__qualname__}.__init__"
+    types = {each.name: each.type for each in fields(made) if each.init}
+    method.__annotations__ = {**types, "return": None}
+    return method
+
+
+def _given(each: Field[Any], known: dict[str, Any]) -> tuple[str, str]:
+    """Return the parameter of a field, and what it is set to; names that both use become known."""
+    name, default = each.name, f"_default_{each.name}"
+    if each.default_factory is not MISSING:
+        known[default] = each.default_factory
+        made = f"{default}() if {name} is _FACTORY else {name}" if each.init else f"{default}()"
+        return f"{name}=_FACTORY", made
+    if each.default is MISSING:
+        return name, name if each.init else ""
+    known[default] = each.default
+    return f"{name}={default}", name if each.init else default
 
 
 def _freeze(made: Any, slots: bool) -> None:

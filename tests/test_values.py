@@ -52,10 +52,26 @@ def classes(make: Any) -> dict[str, type]:
         b: int = 0
 
     @make(frozen=True)
+    class Factories:
+        a: int = 1
+        b: list[int] = field(default_factory=list)
+        made: dict[str, int] = field(default_factory=dict, init=False)
+        fixed: int = field(default=7, init=False)
+        named: tuple[int, ...] = field(default=(), kw_only=True)
+        late: list[int] = field(default_factory=lambda: [3], kw_only=True)
+
+    @make(slots=True)
+    class Fixed:
+        a: int
+        b: int = field(default=7, init=False)
+        unset: int = field(init=False, repr=False, compare=False)
+
+    @make(frozen=True)
     class Above(Frozen):
         d: int = 4
 
-    return {each.__name__: each for each in (Frozen, Slotted, Itself, Plain, Open, Above)}
+    made = (Frozen, Slotted, Itself, Plain, Open, Factories, Fixed, Above)
+    return {each.__name__: each for each in made}
 
 
 EXPECTED, FOUND = classes(standard), classes(later)
@@ -71,6 +87,10 @@ def tried(work: Callable[[], object]) -> object:
 
 ASKED: dict[str, Callable[[Any], object]] = {
     "made": lambda k: k(1),
+    "made with all": lambda k: k(1, [2]),
+    "all by name": lambda k: k(a=1, b=[2], named=(4,), late=[]),
+    "what is made apart": lambda k: (k(1).b is k(1).b, k(1).late),
+    "class": lambda k: (k.a, k.b),
     "made by name": lambda k: k(a=1, b=2),
     "too few": lambda k: k(),
     "too many": lambda k: k(1, 2, 3, 4, 5),
