@@ -90,19 +90,23 @@ class Places:
         return found | named | self._modes(state)
 
     def _modes(self, state: State) -> dict[str, float]:
-        """Return what the names of modes are worth: 1 where one is in force, F and S as written."""
+        """Return what the names of modes are worth: 1 where one is in force, F and S as written.
+
+        Units and feed modes are the same on all ways on which a program goes on (`CARRIED`).
+        """
         inch, incremental = state.groups["units"], state.groups["distance"]
-        modes = {
+        same = {
             "_imperial": bool(inch),
             "_metric": not inch,
-            "_incremental": bool(incremental),
-            "_absolute": not incremental,
             **{name: state.groups["feed-mode"] == NUMBER[code] for name, code in FEEDS.items()},
         }
-        open_ = math.nan if state.lost_modes or self.interpreter.undecided else 1.0
+        other = {"_incremental": bool(incremental), "_absolute": not incremental}
+        known = math.nan if state.lost_modes else 1.0
+        open_ = math.nan if self.interpreter.undecided else known
         timed = state.groups["feed-mode"] == NUMBER["G93"]  # F is what it comes to in G94 there
         feed = math.nan if state.feed_lost or timed else state.feed
-        return {name: on * open_ for name, on in modes.items()} | {"_feed": feed}
+        values = {name: on * known for name, on in same.items()}
+        return values | {name: on * open_ for name, on in other.items()} | {"_feed": feed}
 
     # --- polar words ---
 

@@ -165,4 +165,11 @@ MUTATIONS = (
         'if letter.upper() in "M" and',
         "tests/test_linuxcnc_ini.py::test_words_and_modes_that_are_not_followed",
     ),
+    Mutation(
+        "linuxcnc: G90 is in force behind a branch that may say G91",
+        "gcxform/flow/places.py",
+        "open_ = math.nan if self.interpreter.undecided else known",
+        "open_ = known",
+        "tests/test_corpus.py::test_case[flow/units-behind-a-branch]",
+    ),
 )

@@ -54,7 +54,7 @@
 | G66 G67 | calls behind each G0 and G1 with axis words; behind arcs, cycles, G28: refused |
 | M198 G66.1 | calls of other programs, or with each block: refused |
 | a variable that nothing has set | is null, or is left from before: lost, unless given |
-| a null variable | leaves its word out, is 0 in expressions, and equal to null alone |
+| a null variable | leaves its word out, is 0 in expressions, equal to null alone (M700V p. 314) |
 | a computed distance | in mm, rounded to `[input] increment`; else lost where that decides |
 | an assignment beside words | when it acts is not certain: refused |
 | AND OR XOR | of conditions in brackets; of other numbers, and without brackets: refused |
