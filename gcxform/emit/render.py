@@ -185,15 +185,17 @@ def interleave(
 def _unreached(task: Task) -> Flags:
     """Return which of the lines that the control does not reach are copied.
 
-    In another dialect they would be foreign text: only blank lines and the final % stay.
+    In another dialect they would be foreign text: only blank lines and the final % stay, which has
+    nothing beside it.
     """
     shapes = task.window.shape[task.read.live :]
     if not task.manner.crossing:
         return np.ones(len(shapes), np.bool_)
     percent = task.table.flag("percent", shapes) & task.manner.target.program_rule.has_percent
     blocks = [task.table.shapes.shapes[int(shape)].block for shape in shapes]
+    bare = np.array([len(block.items) == 1 for block in blocks], np.bool_)
     blank = [not block.items and block.error is None for block in blocks]
-    return np.asarray(percent | np.array(blank, np.bool_))
+    return np.asarray(percent & bare | np.array(blank, np.bool_))
 
 
 def _parts(task: Task, is_copy: Flags, source: Ints, text: bytes, lengths: Ints) -> list[bytes]:

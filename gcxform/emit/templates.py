@@ -133,6 +133,8 @@ class TemplateWriter:
 
     def _goes(self, item: Item) -> bool:
         """Whether an item is folded into the words of moves, or done by a pass."""
+        if isinstance(item, Comment):  # beside a percent sign another control may refuse it
+            return self.meaning.percent and self.source is not self.target
         if not isinstance(item, Word):
             return False
         return (code_of(item) if item.address in CODES else item.address) in self.unsaid

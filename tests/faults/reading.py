@@ -255,4 +255,11 @@ MUTATIONS = (
         "if False:",
         "tests/test_corpus.py::test_case[text/brackets-in-a-comment]",
     ),
+    Mutation(
+        "writing: a title behind the end goes to another control",
+        "gcxform/emit/render.py",
+        "percent & bare |",
+        "percent |",
+        "tests/test_corpus.py::test_case[dialects/fanuc/title-for-linuxcnc]",
+    ),
 )
