@@ -29,7 +29,66 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 TARGET = "tests/test_klartext_target.py"
 PLANES = f"{TARGET}::test_arcs_of_other_planes_are_circles_about_a_centre_there"
 
+APPROACH = "plugins/gcxform_plugins/dialects/heidenhain/approach.py"
+ONTO = "tests/test_klartext_approach.py"
+
 MUTATIONS = (
+    Mutation(
+        "klartext: DEP LT ends on the contour",
+        APPROACH,
+        'end = _away(_away(point, along, sizes["LEN"]), aside, radius)',
+        'end = _away(point, along, sizes["LEN"])',
+        f"{ONTO}::test_a_line_goes_on_along_the_contour_and_off_it",
+    ),
+    Mutation(
+        "klartext: APPR LN begins as far off as its tool is thick",
+        APPROACH,
+        'ahead = _away(point, aside, radius + sizes["LEN"])',
+        'ahead = _away(point, aside, sizes["LEN"])',
+        f"{ONTO}::test_a_height_is_reached_beside_the_contour",
+    ),
+    Mutation(
+        "klartext: lines into an arc touch its far side",
+        APPROACH,
+        "way * self.left * degrees(",
+        "-way * self.left * degrees(",
+        f"{ONTO}::test_a_line_goes_into_an_arc_and_out_of_one",
+    ),
+    Mutation(
+        "klartext: R below 0 turns as R above 0 does",
+        APPROACH,
+        "turns = left if radius > 0 else -left",
+        "turns = left",
+        f"{ONTO}::test_they_go_as_by_another_reader",
+    ),
+    Mutation(
+        "klartext: arcs of an approach leave the tool out",
+        APPROACH,
+        "        size = tool + radius",
+        "        size = radius",
+        f"{ONTO}::test_a_line_goes_into_an_arc_and_out_of_one",
+    ),
+    Mutation(
+        "klartext: steps count on behind a departure",
+        APPROACH,
+        '        if shape != "LCT":\n            self.lose(',
+        "        if False:\n            self.lose(",
+        f"{ONTO}::test_what_is_not_certain_is_refused",
+    ),
+    Mutation(
+        "klartext: a height is reached in rapid beside the contour",
+        APPROACH,
+        '(shape != "LN" or rapid or before[0] != self.feed)',
+        '(shape != "LN")',
+        f"{ONTO}::test_a_height_at_which_speed_is_not_known",
+    ),
+    Mutation(
+        "klartext: the way on is as fast as the contour",
+        APPROACH,
+        "self._go(code, ahead, begins), self._go(",
+        "self._go(code, ahead, begins, feed), self._go(",
+        f"{ONTO}::test_they_go_as_by_another_reader",
+    ),
     Mutation(
         "klartext: DR+ in Z and X turns from X towards Z",
         MOVES,

@@ -26,7 +26,9 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | CHF | its length is that along each line (a simulator of TNC 426) | |
 | CT | from the direction in which the element before it ends | iTNC 530, p. 225 |
 | CC behind RND, CHF, CT, CR | whether it holds is not known: write it again | |
-| APPR, DEP, LN, FK, PLANE | refused | |
+| the first move in RL or RR, and R0 | end and begin square to the contour | 620 ISO, p. 146 |
+| APPR, DEP | as `approach.py` says | TNC7 |
+| LN, FK, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
@@ -105,6 +107,7 @@ class Heidenhain(gx.Dialect):
     }
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
+    cutter_comp = gx.CutterComp(entry="next")
     arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},

@@ -43,6 +43,7 @@ class Klartext(Cycles):
             "CR": self.by_radius,
             "CT": self.tangential,
             "RND": self.rounded,
+            "onto": self.along_contour,
             "CHF": self.rounded,
             "centre": self.centre,
             "tool_call": self.tool_call,

@@ -193,7 +193,8 @@ def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
         return
     ends = {f"M{number}" for number, code in context.source.m_codes.items() if code.ends}
     ended = any(event.what in ends and event.row == len(path) for event in path.events)
-    if ended and context.source.cutter_comp.entry:
+    rule = context.source.cutter_comp
+    if ended and rule.corners and rule.entry:
         return
     last = np.array([len(path) - 1])
     raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
