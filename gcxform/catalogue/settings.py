@@ -9,7 +9,6 @@ command line, `--increment IS-B`, or a word of the chain, `chord-error=2um`.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterator, Mapping
 from typing import Any, Final, NamedTuple
 
@@ -46,6 +45,8 @@ class Setting(NamedTuple):
     def worth(self) -> Any:
         """Return the value; 0 where dots or a small letter stand for a number."""
         text = re.sub(r"\.\.\.|\b[a-z]\b(?=[],])", "0.0", self.value).replace(", 0.0 }", " }")
+        import tomllib
+
         return tomllib.loads(f"value = {text}")["value"]
 
 

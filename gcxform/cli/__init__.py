@@ -8,7 +8,6 @@ failed; 70 a bug; 128 and the signal that ended it: 130 interrupted, 143 termina
 
 from __future__ import annotations
 
-import difflib
 import gc
 import os
 import sys
@@ -78,9 +77,11 @@ class Verbs(click.Group):
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the verb of a command line; the error for a misspelt one names the nearest."""
-        near = difflib.get_close_matches(args[0].lower(), VERBS, n=1)
-        if args[0] not in VERBS and near and not ctx.resilient_parsing:
-            ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
+        if args[0] not in VERBS and not ctx.resilient_parsing:
+            from difflib import get_close_matches
+
+            if near := get_close_matches(args[0].lower(), VERBS, n=1):
+                ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

@@ -22,8 +22,8 @@ from gcxform.cli.program.missing import STATELESS, Missing, Visit
 from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity, UsageError
+from gcxform.flow.by_itself import is_subprogram
 from gcxform.flow.straightened import located, written_out
-from gcxform.flow.subprogram_file import is_subprogram
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.program_end import Ending
 from gcxform.modal.reader import Tables, windows_of

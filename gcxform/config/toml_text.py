@@ -6,10 +6,8 @@ in a text which `tomllib` has accepted, so it may take correct syntax for grante
 
 from __future__ import annotations
 
-import difflib
 import enum
 import re
-import tomllib
 import typing
 from collections.abc import Iterable, Sequence
 from functools import cached_property
@@ -113,6 +111,8 @@ class _Scan:
 
     def _dotted(self) -> list[tuple[str, int]]:
         """Read the parts of a dotted key and return them with their offsets."""
+        import tomllib
+
         parts: list[tuple[str, int]] = []
         while not parts or self.text[self.at] == ".":
             self.at += bool(parts)
@@ -217,6 +217,8 @@ def _location(file: str, text: str, line: int, column: int) -> Location:
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """Return a hint: the known word nearest to a wrong one, otherwise all that are known."""
     names = {name.lower(): name for name in known}
+    import difflib
+
     if near := difflib.get_close_matches(word.lower(), names, n=1):
         return write_instead(names[near[0]], word, f"did you mean {names[near[0]]!r}?")
     return f"known: {', '.join(names.values())}" if names else ""
@@ -224,6 +226,8 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
 
 def read_toml(path: Path, codes: Codes) -> TomlText:
     """Return a TOML file, or raise UsageError with the place where it is not one."""
+    import tomllib
+
     text = read_text(path, codes.unreadable, codes.not_toml)
     if text.count(".") > MOST_PARTS and _DEEP.search(_STRING.sub("q", _COMMENT.sub("", text))):
         message = f"a key has more than {MOST_PARTS} parts"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar
 
 import msgspec
 
@@ -31,15 +31,14 @@ from gcxform.contract.option_schemas import (
 )
 from gcxform.diagnostics import FileError, Location, UsageError
 from gcxform.dialect.increments import CALCULATOR, SYSTEMS, Increments
-from gcxform.errormodel import model_file as modelfile
-from gcxform.errormodel.formats import ErrorFormat
-from gcxform.errormodel.model import ErrorModel
-from gcxform.errormodel.model_text import fingerprint, to_toml
-from gcxform.machine.file import load_machine
 from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import Machine
 from gcxform.system import inputs
 from gcxform.values import dataclass
+
+if TYPE_CHECKING:
+    from gcxform.errormodel.formats import ErrorFormat
+    from gcxform.errormodel.model import ErrorModel
 
 Read = TypeVar("Read")
 
@@ -63,6 +62,9 @@ class ModelFile:
     @classmethod
     def load(cls, path: Path, formats: Iterable[type[ErrorFormat]] = ()) -> ModelFile:
         """Return the model of a file; raises UsageError as `load_model` does."""
+        from gcxform.errormodel import model_file as modelfile
+        from gcxform.errormodel.model_text import fingerprint, to_toml
+
         native = path.suffix.lower() == modelfile.SUFFIX
         if native:
             model, data = _read_twice(path, partial(modelfile.load_model, formats=tuple(formats)))
@@ -77,6 +79,8 @@ class ModelFile:
 
         A model that is in that state stays as it is, so that a pass may ask again.
         """
+        from gcxform.errormodel.model_text import fingerprint
+
         if not self.model.states:
             message = f"{self.path.name} holds at any time: it has no thermal model"
             raise UsageError.one("GX426", message, hint="leave `time` out")
@@ -98,6 +102,8 @@ class KinematicsFile:
     @classmethod
     def load(cls, path: Path, known: Known = NONE) -> KinematicsFile:
         """Return the machine of a file; raises UsageError as `load_machine` does."""
+        from gcxform.machine.file import load_machine
+
         machine, data = _read_twice(path, partial(load_machine, known=known))
         return cls(path, machine, hashlib.sha256(data).hexdigest())
 

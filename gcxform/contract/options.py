@@ -23,7 +23,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import MISSING
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeVar
 
 from gcxform.config import arguments
 from gcxform.config.toml_text import did_you_mean
@@ -53,10 +53,12 @@ from gcxform.contract.option_kinds import ParameterValues as ParameterValues
 from gcxform.contract.option_kinds import Vector as Vector
 from gcxform.contract.option_schemas import by_letter, ranged
 from gcxform.diagnostics import Diagnostic, Location, UsageError
-from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import NONE, Known
 from gcxform.system.option_mark import Option as Option
 from gcxform.values import dataclass
+
+if TYPE_CHECKING:
+    from gcxform.errormodel.formats import ErrorFormat
 
 Built = TypeVar("Built")
 Where = Callable[[str], Location]

@@ -18,7 +18,6 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 
 from gcxform.diagnostics import InputError, Location, UsageError
-from gcxform.errormodel.drawn import cell
 from gcxform.system.arrays import Flags, Floats
 from gcxform.values import dataclass
 
@@ -91,6 +90,8 @@ class ErrorModel(ABC):
 
     def _repr_html_(self) -> str:
         """Return what a notebook shows: ranges, and the volume with its error, magnified."""
+        from gcxform.errormodel.drawn import cell
+
         return cell(self)
 
     @property

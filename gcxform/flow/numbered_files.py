@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from gcxform.flow.execution import Execution
+from typing import TYPE_CHECKING
+
 from gcxform.flow.listing import Listing
 from gcxform.flow.lookup import Found
 from gcxform.flow.run_state import whole_number
 from gcxform.syntax.tree import BLANKS, Block, Mark, Word
+
+if TYPE_CHECKING:
+    from gcxform.flow.execution import Execution
 
 
 def file_of(program: Execution, number: int) -> Found | None:

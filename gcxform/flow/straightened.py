@@ -11,7 +11,6 @@ from gcxform.diagnostics import GcxformError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.detection import aliases, has_flow
 from gcxform.flow.executed import Executed, WrittenOut
-from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Tally
 from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
@@ -53,6 +52,8 @@ def written_out(
         source.assumed = tuple(run.assumed)
         source.undecided = Undecided(alarm=run.alarm)
         return source
+    from gcxform.flow.walk import Walked
+
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
     text, undecided = b"".join(run.text), replace(run.undecided(), alarm=run.alarm)
     found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)

@@ -23,12 +23,6 @@ from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Expression, Statement, Word
 
-SIGNS = {
-    "macro-b": re.compile(rb"M[ \t]*0*99(?![0-9])", re.IGNORECASE),
-    "o-words": re.compile(rb"\bendsub\b", re.IGNORECASE),
-}
-"""What the text of every such file has, by the language of its control."""
-
 PLACES = re.compile(
     rb"#[ \t]*(?:[\[#]|50[0-9]{2}(?![0-9])|542|<[ \t]*_[xyzabcuvw][ \t]*>)", re.IGNORECASE
 )
@@ -37,11 +31,8 @@ ELSEWHERE = frozenset({"G65", "G66", "G66.1", "M96", "M97", "M98", "M198"})
 """Codes that lead to other lines, or to other programs."""
 
 
-def is_subprogram(source: Source, dialect: type[Dialect]) -> bool:
-    """Whether the program of a file returns to what has called it, and ends nothing."""
-    sign = SIGNS.get(dialect.flow_rule.language)
-    if sign is None or not any(sign.search(text) for text in source.windows()):
-        return False
+def only_returns(source: Source, dialect: type[Dialect]) -> bool:
+    """Whether a program that has the sign of it returns to what has called it, and ends nothing."""
     listing = _listing(source, dialect)
     if dialect.flow_rule.language == "o-words":
         return _only_defines(listing)

@@ -7,7 +7,6 @@ from dataclasses import asdict, field
 from typing import Any
 
 from gcxform.diagnostics import Diagnostic
-from gcxform.notebook import shown
 from gcxform.values import dataclass
 
 FORMAT = 1
@@ -65,6 +64,8 @@ class Certificate:
         if off is not None:
             rows.append(("largest deviation", f"{off * 1000.0:.4g} um"))
         rows += [("assumed", each) for each in self.assumed]
+        from gcxform.notebook import shown
+
         return shown("certificate", rows)
 
     def to_json(self) -> str:

@@ -16,8 +16,8 @@ from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import InputError, UsageError
 from gcxform.dialect.dialect import Dialect, NumberFormat
-from gcxform.flow.subprogram_file import is_subprogram
-from gcxform.machine.file import load_machine
+from gcxform.flow.by_itself import is_subprogram
+from gcxform.machine.machine import Machine
 from gcxform.modal.state import Entry, Reading
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.certify import certificate
@@ -26,7 +26,6 @@ from gcxform.pipeline.file import PipelineSpec, load
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
-from gcxform.pipeline.subprogram import run_subprogram
 from gcxform.plugin.registry import Registry, default_registry
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.limits import in_force
@@ -112,7 +111,7 @@ class Pipeline(Plan):
         numbers, decimals = _numbers(target, spec)
         file = machine or spec.machine
         with in_force(spec.limits):
-            loaded = load_machine(file, registry.machines) if file else None
+            loaded = _machine(file, registry) if file else None
         return cls(
             source,
             target,
@@ -165,6 +164,8 @@ class Pipeline(Plan):
         out, tell = Output(sink, source_map), progress or (lambda size: None)
         with in_force(self.limits):
             if not self.copies and is_subprogram(source, self.read_as):
+                from gcxform.pipeline.subprogram import run_subprogram
+
                 return run_subprogram(self, source, sink, verify, source_map, tell)
             run = Run(self, source, verify)
             try:
@@ -173,6 +174,12 @@ class Pipeline(Plan):
                 raise InputError(tuple(told_open(error.diagnostics, self.to_fill_in))) from None
             run.check_growth(out)
         return certificate(run, out)
+
+
+def _machine(file: Path, registry: Registry) -> Machine:
+    from gcxform.machine.file import load_machine
+
+    return load_machine(file, registry.machines)
 
 
 def _numbers(target: type[Dialect], spec: PipelineSpec) -> tuple[NumberFormat, dict[str, int]]:

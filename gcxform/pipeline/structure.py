@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import field, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gcxform.diagnostics import InputError
-from gcxform.emit.beside import beside
 from gcxform.emit.emitter import Emitted
-from gcxform.emit.folding import Folded, WholeError, fold
-from gcxform.emit.spelled import Spelled
-from gcxform.flow.walk import Walked
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.text_passes import TextRun
 from gcxform.proof.findings import Findings
-from gcxform.proof.structure import check_executed, check_kept, held_by
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Ints
 from gcxform.values import dataclass
+
+if TYPE_CHECKING:
+    from gcxform.emit.folding import Folded
+    from gcxform.emit.spelled import Spelled
+    from gcxform.flow.walk import Walked
 
 
 @dataclass
@@ -42,6 +43,10 @@ class Structure:
         """Return what keeps the structure of a program; None where it is written out."""
         if plan.structure != "keep" or plan.source is not plan.target:
             return None
+        if source is given:
+            return None
+        from gcxform.flow.walk import Walked
+
         if not isinstance(source, Walked):
             return None
         return cls(plan, given, source, takes_stamps)
@@ -63,6 +68,9 @@ class Structure:
 
     def fold(self) -> Folded | None:
         """Return the program with its structure; None where it is written out as a whole."""
+        from gcxform.emit.beside import beside
+        from gcxform.emit.folding import WholeError, fold
+
         try:
             folded = fold(self._spelled(), self.takes_stamps)
             self._ask_text_passes(folded)
@@ -73,12 +81,16 @@ class Structure:
         return folded
 
     def _spelled(self) -> Spelled:
+        from gcxform.emit.spelled import Spelled
+
         return Spelled(
             self.source.walk, self.source.text, self.source.origin, self.text, self.lines
         )
 
     def _ask_text_passes(self, folded: Folded) -> None:
         """Raise WholeError where a pass that changes text does not take calls and loops."""
+        from gcxform.emit.folding import WholeError
+
         run = TextRun(self.plan.text_passes, self.plan.target, self.source.name)
         try:
             run.edit(folded.text, list(folded.lines), True)
@@ -90,6 +102,8 @@ class Structure:
 
         What was said of the executed blocks is said of the program then.
         """
+        from gcxform.proof.structure import check_executed, check_kept, held_by
+
         target = self.plan.target
         proved = self._spelled().new(0, self.source.walk.blocks)
         written = Source.of_bytes(folded.text, self.given.name)

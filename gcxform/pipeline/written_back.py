@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import field, replace
+from typing import TYPE_CHECKING
 
 from gcxform.emit.emitter import Emitted
-from gcxform.emit.folding import Folded
-from gcxform.emit.respelling import respelled
-from gcxform.emit.spelled_out import spelled_out
-from gcxform.flow.speller import Speller
-from gcxform.flow.translated import Translated
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain import facts_after
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
 from gcxform.proof.findings import Findings
-from gcxform.proof.respelled import check_kept, check_respelled
-from gcxform.proof.spelled_out import check_spelled_out
 from gcxform.syntax.source import Source, lines_in
 from gcxform.toolpath.facts import ABSOLUTE
 from gcxform.values import dataclass
+
+if TYPE_CHECKING:
+    from gcxform.emit.folding import Folded
+    from gcxform.flow.speller import Speller
+    from gcxform.flow.translated import Translated
 
 
 @dataclass
@@ -36,7 +35,11 @@ class WrittenBack:
     @classmethod
     def of(cls, plan: Plan, given: Source, source: Source) -> WrittenBack | None:
         """Return what writes a program in its own language; None where that is another's."""
-        if plan.source is not plan.target or not isinstance(source, Translated):
+        if plan.source is not plan.target or plan.source.translator is None:
+            return None
+        from gcxform.flow.translated import Translated
+
+        if not isinstance(source, Translated):
             return None
         return cls(plan, given, source)
 
@@ -47,6 +50,10 @@ class WrittenBack:
 
     def fold(self) -> Folded:
         """Return the program. Raises InputError where a line cannot be spelled."""
+        from gcxform.emit.folding import Folded
+        from gcxform.emit.respelling import respelled
+        from gcxform.proof.respelled import check_kept
+
         blocks: list[list[bytes]] = [[] for _ in self.source.origin]
         for part in self.parts:
             for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
@@ -60,6 +67,8 @@ class WrittenBack:
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program says what has been proved. Raises GcxformError."""
+        from gcxform.proof.respelled import check_respelled
+
         del account
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
@@ -95,6 +104,9 @@ class SpelledOut:
 
     def fold(self) -> Folded:
         """Return the program. Raises InputError for a block that cannot be said."""
+        from gcxform.emit.folding import Folded
+        from gcxform.emit.spelled_out import spelled_out
+
         blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
@@ -107,6 +119,8 @@ class SpelledOut:
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program is the one that has been proved. Raises VerificationError."""
+        from gcxform.proof.spelled_out import check_spelled_out
+
         del account
         written = Source.of_bytes(folded.text, self.given.name)
         blocks = b"".join(part.text for part in self.parts)

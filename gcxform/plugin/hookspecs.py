@@ -13,18 +13,20 @@ may be named instead, with its place, so that it is imported when it is used:
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import pluggy
 
-from gcxform.contract.passes import Pass, TextPass
-from gcxform.dialect.dialect import Dialect
-from gcxform.errormodel.formats import ErrorFormat
-from gcxform.machine.formats import ControlFiles
-from gcxform.machine.kinds import Kinematics
-from gcxform.machine.presets import MachinePreset
-from gcxform.plugin.offered import Later
-from gcxform.toolpath.facts import Fact
+if TYPE_CHECKING:
+    from gcxform.contract.passes import Pass, TextPass
+    from gcxform.dialect.dialect import Dialect
+    from gcxform.errormodel.formats import ErrorFormat
+    from gcxform.machine.formats import ControlFiles
+    from gcxform.machine.kinds import Kinematics
+    from gcxform.machine.presets import MachinePreset
+    from gcxform.plugin.offered import Later
+    from gcxform.toolpath.facts import Fact
+
 
 PROJECT: Final = "gcxform"
 GROUP: Final = "gcxform.plugins"

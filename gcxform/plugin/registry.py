@@ -15,7 +15,7 @@ from dataclasses import field, fields, replace
 from functools import cache, partial
 from inspect import getattr_static
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import pluggy
 
@@ -26,7 +26,6 @@ from gcxform.contract.options import describe
 from gcxform.contract.passes import Pass, TextPass
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.errormodel.formats import ErrorFormat
 from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.machine.presets import TABLES, MachinePreset
@@ -36,6 +35,9 @@ from gcxform.plugin.offered import Later, Offered, Waiting
 from gcxform.toolpath.facts import FACTS, Fact
 from gcxform.values import dataclass
 from gcxform.version import VERSION
+
+if TYPE_CHECKING:
+    from gcxform.errormodel.formats import ErrorFormat
 
 CORE = "gcxform"
 KINDS: Mapping[str, str] = MappingProxyType(
@@ -320,6 +322,8 @@ def _fact_name(offer: Any) -> str:
 
 
 def _format_name(offer: Any) -> str:
+    from gcxform.errormodel.formats import ErrorFormat
+
     name = _named(offer, (ErrorFormat,))
     if hasattr(offer, "__dataclass_fields__"):
         describe(offer)

@@ -31,8 +31,6 @@ from functools import cached_property
 import numpy as np
 
 from gcxform.contract.passes import CompensationPass, PassContext
-from gcxform.deviations.matching import match
-from gcxform.deviations.paired_pieces import measure
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.plugin.registry import default_registry
@@ -175,6 +173,9 @@ class CentreProof:
 
 def farthest(one: Toolpath, other: Toolpath, tolerance: float) -> tuple[Off, int]:
     """Return how far two paths are apart at most, and in which row of the first that is."""
+    from gcxform.deviations.matching import match
+    from gcxform.deviations.paired_pieces import measure
+
     matching = match(one, other, tolerance, REACH)
     if matching.parted is not None:
         a, b = (max(row, 0) for row in matching.parted)

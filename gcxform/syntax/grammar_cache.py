@@ -10,7 +10,6 @@ from __future__ import annotations
 import hashlib
 import os
 import sys
-import tempfile
 from contextlib import suppress
 from importlib.resources import files
 from importlib.util import cache_from_source
@@ -98,6 +97,8 @@ def _digest(package: str) -> bytes:
 
 def _keep(made: lark.Lark, digest: bytes, place: Path) -> None:
     """Write a file at once or not at all: another run may be reading it, or writing it too."""
+    import tempfile
+
     data = _saved(made)
     handle, name = tempfile.mkstemp(dir=place.parent)
     try:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import errno
 import os
 import sys
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -29,6 +28,8 @@ def write_atomically(path: Path) -> Iterator[Callable[[bytes], object]]:
     may not be written to is not replaced, nor is one that the run has read. Raises FileError, and
     UsageError for the latter.
     """
+    import tempfile
+
     _check_replaceable(path)
     prefix = f".{path.name[:NAME_KEPT]}."
     try:

@@ -7,7 +7,6 @@ through the source in another order (calls that are written out) difflib does.
 
 from __future__ import annotations
 
-import difflib
 import os
 import re
 from collections.abc import Iterable, Iterator
@@ -120,6 +119,8 @@ def _by_map(old: list[bytes], new: list[bytes], lines: list[int]) -> Iterator[Li
 
 def _searched(old: list[bytes], new: list[bytes]) -> Iterator[Line]:
     """Yield the lines of both, as difflib pairs them."""
+    import difflib
+
     matcher = difflib.SequenceMatcher(None, old, new, autojunk=False)
     for kind, i, i_end, j, j_end in matcher.get_opcodes():
         same = kind == "equal"

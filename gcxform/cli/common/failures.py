@@ -6,8 +6,6 @@ import errno
 import os
 import re
 import sys
-import tempfile
-import traceback
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -122,6 +120,8 @@ def reported(error: Exception) -> tuple[str, int, tuple[Diagnostic, ...]]:
         error = _as_failure(error)
     if isinstance(error, GcxformError):
         return error.render(), error.exit_code, error.diagnostics
+    import traceback
+
     trace = "".join(traceback.format_exception(error))
     report = _report(f"gcxform {VERSION}, Python {sys.version}\n\n{trace}")
     return f"internal error: {type(error).__name__}; please report it with {report}", BUG, ()
@@ -238,6 +238,8 @@ def _abandon_stdout() -> None:
 
 def _bug(words: list[str], debug: bool) -> int:
     """Report an exception that nobody foresaw: to a file, with a traceback only on demand."""
+    import traceback
+
     trace = traceback.format_exc()
     if debug:
         say(trace.rstrip())
@@ -252,6 +254,8 @@ def _bug(words: list[str], debug: bool) -> int:
 def _report(text: str) -> str:
     """Write a report beside other temporary files; return its name, nothing if that fails."""
     with suppress(OSError):
+        import tempfile
+
         handle, name = tempfile.mkstemp(prefix="gcxform-bug-", suffix=".txt")
         with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace") as stream:
             stream.write(text)

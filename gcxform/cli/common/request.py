@@ -15,7 +15,6 @@ from gcxform.contract.options import Argument, build
 from gcxform.contract.own_codes import with_own_codes, without_own_codes
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain_text import chain_doubts, parse_chain
@@ -75,8 +74,11 @@ class Asked:
     @cached_property
     def loaded_machine(self) -> Machine | None:
         """The machine that is named, None if none is. Raises UsageError for what is wrong in it."""
-        known = default_registry().machines
-        return load_machine(Path(self.machine), known) if self.machine else None
+        if not self.machine:
+            return None
+        from gcxform.machine.file import load_machine
+
+        return load_machine(Path(self.machine), default_registry().machines)
 
     def build(self, registry: Registry | None = None) -> Pipeline:
         """Return the pipeline. Raises UsageError."""

@@ -18,7 +18,7 @@ from gcxform.cli.program.missing import Look, Visit
 from gcxform.cli.program.used import ANY, Used
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.subprogram_file import is_subprogram
+from gcxform.flow.by_itself import is_subprogram
 from gcxform.guess import guess_dialect
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source

@@ -1,0 +1,24 @@
+"""Is a program a subprogram by itself? Asked of every program, so quickly.
+
+Few programs have the sign that all of those have; what it takes to know is loaded for them alone.
+"""
+
+from __future__ import annotations
+
+import re
+
+from gcxform.dialect.dialect import Dialect
+from gcxform.syntax.source import Source
+
+SIGNS = {"macro-b": rb"M[ \t]*0*99(?![0-9])", "o-words": rb"\bendsub\b"}
+"""What the text of every such file has, by the language of its control."""
+
+
+def is_subprogram(source: Source, dialect: type[Dialect]) -> bool:
+    """Whether the program of a file returns to what has called it, and ends nothing."""
+    sign = SIGNS.get(dialect.flow_rule.language)
+    if sign is None or not any(re.search(sign, each, re.IGNORECASE) for each in source.windows()):
+        return False
+    from gcxform.flow.subprogram_file import only_returns
+
+    return only_returns(source, dialect)
