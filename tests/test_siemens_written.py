@@ -84,6 +84,32 @@ def test_across_the_tool_its_length_need_not_be_said():
     assert lines[-5:] == ["SUPA G0 Z0 D0", "T4 M6", "G0 X1 Y1", "D1", "G0 Z5"]
 
 
+def test_holes_become_cycles_and_rows_of_them_modal_ones():
+    hole = "G0 Z2.\nG1 Z-5. F80.\nG0 Z20."
+    row = "\n".join(f"X{x}.\nZ2.\nG1 Z-5.\nG0 Z20." for x in (20, 30))
+    deeper = "X40.\nZ2.\nG1 Z-6.\nG4 P0.5\nG0 Z20."
+    lines = said(f"T3 M6\nG43 H3\nG0 X1. Y2. Z20.\n{hole}\n{row}\n{deeper}\nX50.")
+    call = "CYCLE81(20,1,1,-5)"
+    there = ["F80", call, f"MCALL {call}", "X20", "X30", "MCALL"]
+    assert lines[3:] == [*there, "X40", "CYCLE82(20,1,1,-6,,0.5)", "X50"]
+
+
+TO = "T3 M6\nG43 H3\nG0 X1. Y2. Z20.\n"
+HOLE = "Z2.\nG1 Z-5. F80.\n"
+STAY = {
+    "without a length, which is an alarm": f"G0 X1. Y2. Z20.\n{HOLE}G0 Z20.",
+    "strokes of one hole": f"{TO}{HOLE}G4 P1.\nG0 Z20.\nZ-4.\nG1 Z-9.\nG0 Z20.",
+    "in another plane": f"{TO}G18\n{HOLE}G0 Z20.",
+    "not up to where it began": f"{TO}{HOLE}G0 Z1.",
+    "with the spindle reversed": f"{TO}{HOLE}M4\nG0 Z20.",
+}
+
+
+@pytest.mark.parametrize("blocks", STAY.values(), ids=STAY)
+def test_moves_that_are_no_cycle_stay(blocks):
+    assert not any("CYCLE" in line for line in said(blocks))
+
+
 WRONG = [
     ("D1", "D0", "the length of a tool"),
     ("G55", "G56", "a work offset, or a length"),

@@ -45,6 +45,8 @@ def spelled_out(
             raise InputError((Diagnostic("GX501", str(why), where, why.hint or HINT),)) from None
         lines += said
         of += [line] * len(said)
+    both = [*speller.gathered([*zip(lines, of, strict=True)])]
+    lines, of = [line for line, _ in both], [line for _, line in both]
     ends = speller.closing()
     lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]
     return "".join(f"{line}\n" for line in lines).encode("latin-1"), of, speller.left_out

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections import Counter
+from collections.abc import Iterable
 from typing import ClassVar
 
 COMMENT = re.compile(r"\(([^()]*)\)")
@@ -60,6 +61,10 @@ class Speller(ABC):
     def closing(self) -> list[str]:
         """Return the lines behind the last block."""
         return []
+
+    def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
+        """Return all lines, each with the line that it is for, where several are said in one."""
+        return lines
 
     def numbered(self, lines: list[str]) -> list[str]:
         """Return all lines with the numbers that they have in the language."""

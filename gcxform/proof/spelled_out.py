@@ -23,7 +23,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame
-from gcxform.toolpath.path import Event, Form, Plane, Toolpath
+from gcxform.toolpath.path import Event, Form, Kind, Plane, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 LENGTH = "the length of a tool counts from its change on, and here it should not"
@@ -87,7 +87,8 @@ def _differences(
     yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
-    yield from _first(~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
+    cuts = a.kind != Kind.RAPID
+    yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
     by_size = np.where(a.plane == Plane.XY, near, near + ROUND)  # computed, where there is no R

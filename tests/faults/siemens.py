@@ -24,12 +24,55 @@ CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
 CONTOURS = "plugins/gcxform_plugins/dialects/siemens/contours.py"
 POLAR = "plugins/gcxform_plugins/dialects/siemens/polar.py"
+GATHERING = "plugins/gcxform_plugins/dialects/siemens/gathering.py"
 LINES = "plugins/gcxform_plugins/dialects/siemens/lines.py"
 SPELLED = "gcxform/proof/spelled_out.py"
 WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
 MUTATIONS = (
+    Mutation(
+        "siemens written: a cycle without a length",
+        GATHERING,
+        'self.edge = found[2] == "D" and number != 0',
+        "self.edge = True",
+        "tests/test_siemens_written.py::test_moves_that_are_no_cycle_stay",
+    ),
+    Mutation(
+        "siemens written: a row goes on with a hole of another depth",
+        GATHERING,
+        "hole.call != call or hole.feed",
+        "hole.feed",
+        "tests/test_siemens_written.py::test_holes_become_cycles_and_rows_of_them_modal_ones",
+    ),
+    Mutation(
+        "siemens written: strokes are cycles of their own",
+        GATHERING,
+        "return hole if behind is None else None",
+        "return hole",
+        "tests/test_siemens_written.py::test_moves_that_are_no_cycle_stay",
+    ),
+    Mutation(
+        "siemens written: the start of a cycle is its surface",
+        GATHERING,
+        "(back, start - clear, clear, bottom)",
+        "(back, start, clear, bottom)",
+        "tests/test_siemens_written.py::test_holes_become_cycles_and_rows_of_them_modal_ones",
+    ),
+    Mutation(
+        "siemens written: MCALL does not end",
+        GATHERING,
+        'yield "MCALL", lines[at - 1][1]',
+        'yield "", lines[at - 1][1]',
+        "tests/test_siemens_written.py::test_holes_become_cycles_and_rows_of_them_modal_ones",
+    ),
+    Mutation(
+        "siemens written: the feed of a hole is not said",
+        GATHERING,
+        'yield f"F{hole.feed}", of',
+        'yield "", of',
+        "tests/test_siemens_written.py::test_holes_become_cycles_and_rows_of_them_modal_ones",
+    ),
     Mutation(
         "siemens: a chamfer's own length is along its lines",
         CONTOURS,
@@ -339,6 +382,13 @@ MUTATIONS = (
         "named = [k for k, axis in enumerate(a.axes) if axis in words]",
         "named = [*range(len(a.axes))]",
         "tests/test_siemens_written.py::test_across_the_tool_its_length_need_not_be_said",
+    ),
+    Mutation(
+        "spelled: feeds are not compared",
+        SPELLED,
+        "cuts = a.kind != Kind.RAPID",
+        "cuts = a.kind < 0",
+        COMPARED,
     ),
     Mutation(
         "spelled: no length counts in any word",

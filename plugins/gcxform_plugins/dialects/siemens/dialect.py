@@ -1,8 +1,9 @@
 """SINUMERIK 840D sl and SINUMERIK ONE, milling, in its own language (G290).
 
-Programs of words are written for it (`lines.py`). From itself it is written by passes that keep
-positions: lines that are not changed keep their bytes, and what is refused below is then kept as it
-stands, with all that is lost behind it.
+Programs of words are written for it (`lines.py`), holes as CYCLE81 and CYCLE82 behind MCALL where
+their moves are the same and D says a length (`gathering.py`). From itself it is written by passes
+that keep positions: lines that are not changed keep their bytes, and what is refused below is then
+kept as it stands, with all that is lost behind it.
 
 | what | SINUMERIK | known from |
 |---|---|---|

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.gathering import gathered
 from gcxform_plugins.dialects.siemens.place import text_of
 from gcxform_plugins.dialects.siemens.reading import WORK
 
@@ -61,6 +62,10 @@ class Lines(gx.Speller):
             text = self.comment + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
+
+    def gathered(self, lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
+        """Return all lines, with cycles for the moves of holes."""
+        return gathered(lines)
 
     def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
         if not words:
