@@ -43,6 +43,13 @@ def test_what_moves_nothing_may_be_left_out(source, target, block, name):
     assert said(source, target, blocks, drop=frozenset({name})) == ["G0 X1."]
 
 
+@pytest.mark.parametrize("target", ["linuxcnc", "fanuc"])
+def test_an_end_behind_the_end_says_nothing(target):
+    assert said("grbl", target, "G0 X1.\nM2\n\nN9 M30") == ["G0 X1.", "M2", "", "N9 M30"]
+    for more in ("M5\nM2", "G0 X2.", "M5 M2"):
+        assert "goes on here" in refused("grbl", target, f"G0 X1.\nM2\n{more}").message
+
+
 def test_names_of_programs_are_spelled_as_the_control_has_them():
     named = "O<Part>\nG0 X1."
     assert said("linuxcnc", "fanuc", named) == ["<Part>", "G0 X1."]

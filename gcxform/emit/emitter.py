@@ -17,7 +17,7 @@ from gcxform.catalogue.offers import put_before
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
-from gcxform.emit.expressible import left_out, nothing_left
+from gcxform.emit.expressible import left_out, nothing_left, says_more
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
 from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
@@ -34,7 +34,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.modal.program_end import Frame
 from gcxform.syntax.scan import Window
-from gcxform.syntax.tree import Comment, Item, Word
+from gcxform.syntax.tree import Comment, Item
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
@@ -204,18 +204,20 @@ class _Job:
                 raise InputError.one("GX226", message, task.location(line), hint)
 
     def _refuse_behind_end(self) -> None:
-        """Refuse blocks behind an end at which the target stops, and the source does not."""
+        """Refuse blocks behind an end at which the target stops, and the source does not.
+
+        Another end does nothing there; what the proof sees of it is in the same window.
+        """
         task = self.task
         source, target = task.manner.source, task.manner.target
         if source.program_rule.stops_at_end or not target.program_rule.stops_at_end:
             return
+        ends = {n for n, code in source.m_codes.items() if code.ends and not self.emitter.over}
         over = np.logical_or.accumulate(
             np.append(self.emitter.over, task.table.flag("ends", task.shape))
         )
         self.emitter.over = bool(over[-1])
-        wrong = over[:-1] & self._of_shapes(
-            lambda items, _: any(isinstance(i, Word) for i in items)
-        )
+        wrong = over[:-1] & self._of_shapes(lambda items, _: says_more(items, ends))
         if wrong.any():
             message = f"{target.name} stops at the end before, and {source.name} goes on here"
             where = task.location(int(np.argmax(wrong)))

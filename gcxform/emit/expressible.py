@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from itertools import pairwise
 
 import numpy as np
@@ -125,6 +125,15 @@ def is_foreign(item: Item, source: type[Dialect], target: type[Dialect]) -> bool
         framed = source.program_rule.has_percent and target.program_rule.has_percent
         return source is not target and not framed
     return item.kind.startswith("program") and not target.program_rule.has_program_number
+
+
+def says_more(items: tuple[Item, ...], ends: Set[int]) -> bool:
+    """Whether a block has words but those that end a program, by the numbers of their M codes."""
+    words = (item for item in items if isinstance(item, Word) and item.address != "N")
+    return any(
+        word.address != "M" or not isinstance(word.value, Number) or word.value.value not in ends
+        for word in words
+    )
 
 
 def program_named(text: str, target: type[Dialect]) -> str:

@@ -47,12 +47,22 @@ class EventProof:
     def of_source(self, path: Toolpath) -> tuple[Event, ...]:
         """Return the events of the source without those that a pass has taken over."""
         told = tuple(event for event in self.told(path) if event.what not in self.switches)
+        told = self._until_end(told)
         saying = self.context.saying
         if not (saying.crosses or saying.drop or saying.m_codes):
             return told
         if saying.length_said:  # it has a block of its own, before its line
             told = tuple(sorted(told, key=lambda e: (e.line, not saying.lengthens(e.what))))
         return tuple(self._as_there(event, path) for event in told if saying.instead(event.what))
+
+    def _until_end(self, told: tuple[Event, ...]) -> tuple[Event, ...]:
+        """Return events without further ends behind one at which the target alone stops."""
+        source, target = self.context.source, self.context.target
+        if source.program_rule.stops_at_end or not target.program_rule.stops_at_end:
+            return told
+        ends = {f"M{number}" for number, code in source.m_codes.items() if code.ends}
+        first = next((n for n, event in enumerate(told) if event.what in ends), len(told))
+        return tuple(e for n, e in enumerate(told) if n <= first or e.what not in ends)
 
     def _as_there(self, event: Event, path: Toolpath) -> Event:
         """Return an event of the source as the target names it.

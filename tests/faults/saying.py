@@ -95,6 +95,13 @@ MUTATIONS = (
         HERE,
     ),
     Mutation(
+        "saying: what stands behind an end and acts is taken for another end",
+        "gcxform/emit/expressible.py",
+        "or word.value.value not in ends",
+        "or False",
+        "tests/test_left_out_across.py",
+    ),
+    Mutation(
         "saying: a program's name stays spelled as it was",
         "gcxform/emit/expressible.py",
         'return f"O{bare}" if target.flow_rule.language == "o-words" else bare',
