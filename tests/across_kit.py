@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from check_kit import new_in_output
 
 import gcxform as gx
 from gcxform.plugin.registry import default_registry
@@ -12,10 +13,15 @@ HEAD = "G21 G90 G94 G17 G54\n"
 
 
 def said(reading, source, target, blocks, **options):
-    """Return the lines that blocks become, proved, without those of the head and of the end."""
+    """Return the lines that blocks become, proved, without those of the head and of the end.
+
+    Nothing speaks against them on their control that does not speak against the blocks on theirs.
+    """
     pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), reading, **options)
-    result = pipeline.run(f"{HEAD}{blocks}\nM2\n".encode())
+    program = f"{HEAD}{blocks}\nM2\n".encode()
+    result = pipeline.run(program)
     assert result.certificate.verified
+    assert not new_in_output(program, result.text, pipeline)
     return result.text.decode().split("\n")[1:-2]
 
 

@@ -24,4 +24,5 @@ def new_in_output(source: bytes, output: bytes, pipeline: gx.Pipeline) -> set[st
     """Return the codes of what is found in an output by its target, and not in its source."""
     plain = replace(pipeline, passes=(), budget=1.0, words="changed", again=True)
     before = found_by_check(source, replace(plain, target=pipeline.source))
-    return found_by_check(output, replace(plain, source=pipeline.target)) - before
+    there = replace(plain, source=pipeline.target, drop=frozenset(), m_codes={}, inert=frozenset())
+    return found_by_check(output, there) - before

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from check_kit import new_in_output
 
 import gcxform as gx
 from gcxform.machine.machine import Tool
@@ -23,8 +24,10 @@ HEAD = "G21 G90 G94 G17 G54\n"
 def said(source, target, blocks, end="M2", **options):
     """Return what comes out behind the head, without the end, and the sentences about codes."""
     pipeline = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), START, **options)
-    result = pipeline.run(f"{HEAD}{blocks}\n{end}\n".encode())
+    program = f"{HEAD}{blocks}\n{end}\n".encode()
+    result = pipeline.run(program)
     assert result.certificate.verified
+    assert not new_in_output(program, result.text, pipeline)
     lines = result.text.decode().split("\n")
     told = [each for each in result.certificate.assumed if f" for {target}: " in each]
     return lines[1:-2], told
@@ -90,6 +93,11 @@ DWELLS = [
 @pytest.mark.parametrize(("source", "target", "block", "expected"), DWELLS)
 def test_dwells_last_as_long(source, target, block, expected):
     assert said(source, target, block)[0] == [expected]
+
+
+def test_no_cycle_waits_where_a_setting_says_how_long():
+    found = refused("linuxcnc", "mach3", "G82 X1 Y2 Z-1 R2 P0.5 F100")
+    assert (found.code, found.message) == ("GX501", "mach3 cannot say the DWELL of this cycle")
 
 
 def test_a_dwell_that_no_word_can_say():

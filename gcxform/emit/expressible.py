@@ -155,7 +155,12 @@ def event_text(event: Event, target: type[Dialect], gap: bytes) -> bytes | None:
 
 
 def dwell_word(seconds: float, target: type[Dialect]) -> str:
-    """Return the word by which a control waits for a time, "" if none can say it."""
+    """Return the word by which a control waits for a time, "" if none can say it.
+
+    Nor can any where a setting of the control says what its G4 counts.
+    """
+    if "G4" not in target.codes or target.codes["G4"].effect is not Effect.DWELL:
+        return ""
     for address, unit in target.point_rule.dwell.items():
         count = seconds / unit
         whole = abs(count - round(count)) < 1e-9

@@ -102,6 +102,13 @@ MUTATIONS = (
         "tests/test_left_out_across.py",
     ),
     Mutation(
+        "saying: a cycle waits where a setting says how long",
+        "gcxform/emit/expressible.py",
+        'if "G4" not in target.codes or target.codes["G4"].effect is not Effect.DWELL:',
+        'if "G4" not in target.codes:',
+        HERE,
+    ),
+    Mutation(
         "saying: a program's name stays spelled as it was",
         "gcxform/emit/expressible.py",
         'return f"O{bare}" if target.flow_rule.language == "o-words" else bare',
