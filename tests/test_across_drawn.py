@@ -1,0 +1,78 @@
+"""Drawn programs of one control mean on another what they mean on theirs, by readers of their own.
+
+Where one side is LinuxCNC its interpreter says what that is. What is refused is no business here,
+but that it is no fault of ours (GX601, GX604), and that not everything is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+import seeds_kit
+from oracles import rs274
+from reference import shop
+from shop_kit import Drawn, by_linuxcnc
+
+import gcxform as gx
+from gcxform.machine.machine import Tool
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+
+DIALECTS = default_registry().dialects
+AXES = "XYZ"
+READING = Reading(
+    dict.fromkeys(AXES, 0.0),
+    tools={n: Tool(length=length, radius=3.0) for n, length in shop.LENGTHS.items() if n},
+    work_offsets={f"G{53 + n}": dict(zip(AXES, at, strict=True)) for n, at in shop.OFFSETS.items()},
+    homes={"G28": dict(zip(AXES, shop.HOME, strict=True))},
+    control={"peck-return": shop.BREAK, "peck-clearance": shop.CLEAR},
+    inert_m=frozenset({6}),
+)
+OF_CONTROL = {
+    "haas": {"cycle-without-place": "drills", "g52": "fanuc"},
+    "mach3": {"arc-centres": "incremental"},
+}
+SOURCES = ("linuxcnc", "fanuc", "haas", "grbl", "mach3", "siemens", "fagor")
+TARGETS = ("linuxcnc", "fanuc", "haas", "grbl", "siemens", "fagor")
+CHANGED = ("fanuc", "haas", "siemens", "fagor")
+"""Controls whose tool changes may move axes: here they do not."""
+
+
+def reading_of(source: str) -> Reading:
+    control = {} if source not in ("fanuc", "haas") else dict(READING.control)
+    return replace(READING, control={**control, **OF_CONTROL.get(source, {})})
+
+
+def done(control: str, text: str) -> list[shop.Move | str]:
+    return by_linuxcnc(text) if control == "linuxcnc" else shop.read(control, text)
+
+
+def translated(seed: int, source: str, target: str) -> tuple[str, str] | None:
+    """Return a drawn program and what it becomes; None where it is refused."""
+    text = Drawn(seed, source).text()
+    inert = frozenset({"M6"}) if target in CHANGED else frozenset()
+    dialects = DIALECTS[source], DIALECTS[target]
+    try:
+        found = gx.Pipeline(*dialects, (), reading_of(source), inert=inert).run(text.encode())
+    except gx.VerificationError:
+        raise
+    except gx.GcxformError:
+        return None
+    return text, found.text.decode()
+
+
+@pytest.mark.parametrize("source", SOURCES)
+def test_a_drawn_program_means_the_same_there(source):
+    compared = 0
+    pairs = [target for target in TARGETS if target != source]
+    for seed in seeds_kit.some(8):
+        for target in pairs:
+            if "linuxcnc" in (source, target) and not rs274.available():
+                continue
+            if (pair := translated(seed, source, target)) is None:
+                continue
+            found = shop.differs(done(source, pair[0]), done(target, pair[1]))
+            assert found is None, f"{target}: {found}\n{pair[0]}\n{pair[1]}"
+            compared += 1
+    assert compared >= len(pairs) or not rs274.available(), "nearly all was refused"
