@@ -1,11 +1,11 @@
 """What a start of gcxform takes, in ratios to `import numpy`, which no start can do without.
 
-    python benchmarks/starting.py [--rounds N] [--bare [EXTRA]]
+    python benchmarks/starting.py [--rounds N] [--check] [--bare [EXTRA]]
 
 Processor time (user + sys) and peak memory are medians of runs in turn, so they hold on a computer
-that does other things as well. `--bare` builds the sdist, the wheel from it, and installs that into
-a new environment, which has nothing else, or what an extra brings (`all`); pip needs an index for
-what gcxform stands on.
+that does other things as well. `--check` ends with 1 where a job takes more than `LIMITS`.
+`--bare` builds the sdist, the wheel from it, and installs that into a new environment, which has
+nothing else, or what an extra brings (`all`); pip needs an index for what gcxform stands on.
 """
 
 from __future__ import annotations
@@ -22,19 +22,26 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 PROGRAM = b"G21 G90 G17 G54\nG0 X0 Y0 Z5\nG91\nG1 Z-6 F500\nG90\nX10\nM2\n"
 NUMPY = "import numpy"
+LIMITS = {"gcxform --version": 1.0, "gcxform --help": 1.0, "gcxform run, 7 lines": 2.5}
+SLACK = 1.1  # two computers, and two hours of one, differ by as much
 
 
 def jobs(python: Path, program: Path) -> dict[str, list[str]]:
     """Return what is measured, by name."""
     gcxform = [str(python), "-m", "gcxform.cli"]
-    run = ["run", "-q", "-f", "linuxcnc", "-x", "absolute", str(program), "-o", f"{program}.out"]
+    chain = ["-f", "linuxcnc", "-x", "absolute"]
+    kept = ["-o", f"{program}.out", "--certificate", f"{program}.json"]
     return {
         "python": [str(python), "-c", ""],
         NUMPY: [str(python), "-c", NUMPY],
         "import gcxform": [str(python), "-c", "import gcxform"],
         "gcxform --version": [*gcxform, "--version"],
         "gcxform --help": [*gcxform, "--help"],
-        "gcxform run, 7 lines": [*gcxform, *run],
+        "gcxform completion bash": [*gcxform, "completion", "bash"],
+        "gcxform run, 7 lines": [*gcxform, "run", "-q", *chain, str(program), *kept],
+        "gcxform post, 7 lines": [*gcxform, "post", *chain, f"{program}.out"],
+        "gcxform check, 7 lines": [*gcxform, "check", *chain, str(program)],
+        "gcxform info, 7 lines": [*gcxform, "info", "-f", "linuxcnc", str(program)],
     }
 
 
@@ -67,6 +74,7 @@ def main() -> None:
     """Measure, and print a table in Markdown."""
     words = argparse.ArgumentParser(description=__doc__)
     words.add_argument("--rounds", type=int, default=9)
+    words.add_argument("--check", action="store_true")
     words.add_argument("--bare", nargs="?", const="", metavar="EXTRA")
     asked = words.parse_args()
     with tempfile.TemporaryDirectory() as name:
@@ -86,6 +94,10 @@ def main() -> None:
     for name, (time, memory) in medians.items():
         ratios = time / medians[NUMPY][0], memory / medians[NUMPY][1]
         print(f"| `{name}` | {time:.0f} | {ratios[0]:.2f} | {memory:.1f} | {ratios[1]:.2f} |")
+    most = {name: LIMITS[name] * SLACK * medians[NUMPY][0] for name in LIMITS}
+    slow = [name for name in LIMITS if medians[name][0] > most[name]]
+    if asked.check and slow:
+        sys.exit(f"over their limit: {', '.join(slow)}")
 
 
 if __name__ == "__main__":

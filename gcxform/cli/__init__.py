@@ -13,7 +13,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any, Final, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gcxform.cli.common import DEBUG
 from gcxform.cli.common.signals import end_quietly
@@ -23,6 +23,9 @@ end_quietly()  # before the first import that takes time
 import click  # noqa: E402
 
 from gcxform.version import VERSION  # noqa: E402
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
 
 VERBS: Final = {
     "run": "Transform a program, prove the result, and write it.",
@@ -83,6 +86,13 @@ class Verbs(click.Group):
             if near := get_close_matches(args[0].lower(), VERBS, n=1):
                 ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
         return super().resolve_command(ctx, args)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Return verbs and options that begin so, without importing any verb."""
+        from click.shell_completion import CompletionItem
+
+        found = [CompletionItem(n, help=h) for n, h in VERBS.items() if n.startswith(incomplete)]
+        return [*found, *click.Command.shell_complete(self, ctx, incomplete)]
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the list of verbs without importing any."""
