@@ -225,9 +225,6 @@ def _angle(function: Callable[[np.longdouble], np.longdouble], name: str) -> Fun
 
 
 def _arctangent(y: float, x: float) -> float:
-    # a place that is 0 is said as -0: which sign it has is not known
-    if y == 0 and x <= 0 and "-0.0" in (str(y), str(x)):
-        raise NoValueError("this angle hangs on the sign of a zero, which is not certain")
     return float(np.arctan2(np.longdouble(y), np.longdouble(x)) * 180 / PI)
 
 

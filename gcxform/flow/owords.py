@@ -10,16 +10,17 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from functools import cached_property
 
 from gcxform.diagnostics import InputError
-from gcxform.dialect.arithmetic import NoValueError, whole
+from gcxform.dialect.arithmetic import Arithmetic, NoValueError, whole
 from gcxform.flow.constructs import Construct, OWord
 from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
 from gcxform.flow.oword_loops import OWordLoops
 from gcxform.flow.oword_names import LOCALS, STANDS, is_local, is_named_local, name_of
-from gcxform.flow.places import FIRST, Places
+from gcxform.flow.places import FIRST, Places, beside_zeros
 from gcxform.flow.residual import Edit
 from gcxform.flow.run_state import Call, whole_number
 from gcxform.modal.state import Reading
@@ -48,6 +49,11 @@ class OWords(OWordLoops):
         self.places = Places(self)
         self.returned()
         self.subprograms = Subprograms(self)
+
+    @cached_property
+    def beside_zeros(self) -> Arithmetic:
+        """How it computes behind a block that has read a place at 0."""
+        return beside_zeros(self.arithmetic)
 
     def arrange(self) -> None:
         """Find which lines belong together."""
@@ -105,7 +111,10 @@ class OWords(OWordLoops):
         if NAMES_POSITION.search(block.text):
             self.acted = True
             self.tied = "positions or modes are read (#5420 to #5428, #<_x>, #<_metric>)"
-            self.set(self.places.parameters() | {"_rpm": self.modes.speed()})
+            found = self.places.parameters()
+            if any(found.get(key) == 0 for key in POSITIONS):
+                self.arithmetic = self.beside_zeros
+            self.set(found | {"_rpm": self.modes.speed()})
         elif FIRST in self.parameters:
             self.parameters |= dict.fromkeys((*POSITIONS, *STANDS), math.nan)
         word = self.words.get(self.line)

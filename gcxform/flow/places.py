@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from gcxform.diagnostics import InputError
+from gcxform.dialect.arithmetic import Arithmetic, NoValueError
 from gcxform.dialect.dialect import INCH, LINEAR
 from gcxform.flow.execution import Execution
 from gcxform.flow.residual import Edit
@@ -28,6 +29,21 @@ RADIUS, ANGLE = "@", "^"
 ZERO = 1e-6
 """A radius, in the unit of the program, at which rounding alone may say what the angle is."""
 AXES_OF_PLANE = frozenset("XY")
+
+
+def beside_zeros(arithmetic: Arithmetic) -> Arithmetic:
+    """Return the arithmetic of a program that has read a place at 0.
+
+    LinuxCNC keeps the minus of X-0 there, which is not followed; no angle may hang on it.
+    """
+    plain = arithmetic.functions["ATAN/"]
+
+    def angle(y: float, x: float) -> float:
+        if y == 0 and x <= 0:
+            raise NoValueError("this angle hangs on the sign of a zero, which is not certain")
+        return float(plain(y, x))
+
+    return replace(arithmetic, functions={**arithmetic.functions, "ATAN/": angle})
 
 
 class Places:
@@ -66,10 +82,7 @@ class Places:
         return self.interpreter.axes
 
     def words(self) -> dict[str, float]:
-        """Return where the axes stand, as the words of a block would say it; nan: not known.
-
-        The sign of a zero is that of the word before it and of shifts, which is not followed: -0.
-        """
+        """Return where the axes stand, as the words of a block would say it; nan: not known."""
         state = self.now()
         frame = state.frames.frame()
         axes = self.interpreter.axes
@@ -78,7 +91,7 @@ class Places:
         words = frame.words(state.position[np.newaxis])[0]
         inch = INCH if state.groups["units"] else 1.0
         return {
-            axis: float(word) / (inch if axis in LINEAR else 1.0) or -0.0
+            axis: float(word) / (inch if axis in LINEAR else 1.0)
             for axis, word in zip(axes, words, strict=True)
         }
 

@@ -242,16 +242,16 @@ MUTATIONS = (
     ),
     Mutation(
         "computing: a place that is 0 has the sign of a plus",
-        "gcxform/flow/places.py",
-        " or -0.0",
-        "",
+        "gcxform/flow/owords.py",
+        "if any(found.get(key) == 0 for key in POSITIONS):",
+        "if False:",
         "tests/test_corpus.py::test_case[flow/zero-of-a-place]",
     ),
     Mutation(
         "computing: the angle of a zero hangs on no sign",
-        "gcxform/dialect/arithmetic.py",
-        "if y == 0 and x <= 0 and",
-        "if y == 0 and x < 0 and",
+        "gcxform/flow/places.py",
+        "if y == 0 and x <= 0:",
+        "if y == 0 and x == 0:",
         "tests/test_corpus.py::test_case[flow/zero-of-a-place]",
     ),
 )
