@@ -43,14 +43,9 @@ def compensates(passes: Sequence[Pass]) -> bool:
     return before & moved == after & moved and (COMPENSATED in before) != (COMPENSATED in after)
 
 
-def compensates_cycles(passes: Sequence[Pass]) -> bool:
-    """Return whether cycles are written as moves, since the error is another one at each."""
-    return compensates(passes) and not any(step.demands.resolves for step in passes)
-
-
 def expands_cycles(passes: Sequence[Pass]) -> bool:
     """Return whether all canned cycles become plain moves: by a pass, or to be compensated."""
-    return compensates_cycles(passes) or any(NO_CYCLES in step.ensures for step in passes)
+    return compensates(passes) or any(NO_CYCLES in step.ensures for step in passes)
 
 
 def check_chain(passes: Sequence[Pass]) -> None:

@@ -6,17 +6,26 @@ at the blocks that follow.
 So a pass must keep such rows, and those that begin and end compensation, one for one and as they
 are. Whatever else a pass declares or returns is refused here, for every pass at once; so are pieces
 of an arc, which have corners when they are rounded.
+
+What takes errors off moves every point, so before it the contour becomes the path of the centre by
+itself, where the control does that in one way alone: then nothing depends on what is not known but
+the radius, which is asked for.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from gcxform.catalogue.offers import put_before
-from gcxform.contract.passes import Pass
+from gcxform.contract.passes import CompensationPass, Pass, resolved
+from gcxform.pipeline.chain import compensates
+from gcxform.pipeline.plan import Plan
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Toolpath
 
@@ -25,7 +34,38 @@ COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 AXIS = re.compile(rb"[XYZxyz]")
 WHICH = ("kind", "plane", "source", "nth", "form", "side")
 WHERE = ("start", "end", "centre", "sweep", "radius")
+RESOLVED = (
+    "contours under G41 and G42 become the path of the tool's centre, by the radii that are known "
+    "here: offsets that are set at the control act on them no more"
+)
 NOISE = 1e-9  # mm, rad; what computing a position in another way makes of it
+
+
+def with_centre_path(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]:
+    """Return a plan that resolves the contours of a program where errors are taken off them.
+
+    The plan itself where it does so already, where nothing is to be resolved, and where parameters
+    of the machine decide how. With it comes what the certificate says of that.
+    """
+    steps = plan.path_passes
+    if resolved(steps) or not compensates(steps) or not _begins_contour(source):
+        return plan, ()
+    kinds = default_registry().passes.values()
+    ways = [
+        way
+        for kind in kinds
+        if issubclass(kind, CompensationPass)
+        for way in kind.ways(plan.source)
+    ]
+    if len(ways) != 1:
+        return plan, ()
+    return replace(plan, passes=(ways[0], *plan.passes)), (RESOLVED,)
+
+
+def _begins_contour(source: Source) -> bool:
+    """Whether a program has G41 or G42 outside of its comments."""
+    texts = (COMMENT.sub(b"", text) for text in source.windows() if CODE.search(text))
+    return any(found[1] != b"0" for text in texts for found in CODE.finditer(text))
 
 
 def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:

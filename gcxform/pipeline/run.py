@@ -20,7 +20,7 @@ from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
 from gcxform.modal.reader import Apart, WindowReader
 from gcxform.pipeline.blind_moves import check_blind
-from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches
+from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches, with_centre_path
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
@@ -80,12 +80,12 @@ class Run:
         self.heads = self._heads()
         self.source = source
         self.verify = verify
-        self.steps = plan.path_passes
         self.text = TextRun(plan.text_passes, plan.target, source.name, self._tell)
         if not plan.copies:
             self.source = written_out(source, plan.read_as, plan.machine_reading, plan.target)
         self.executes = self.source is not source
-        self.assumed = self.source.assumed
+        self.plan, said = with_centre_path(plan, self.source)
+        self.steps, self.assumed = self.plan.path_passes, (*self.source.assumed, *said)
         self.executed = getattr(self.source, "executed", None)
         self.files = getattr(self.source, "files", ())
         self.structure = structure_of(plan, source, self.source, bool(self.marks.read))

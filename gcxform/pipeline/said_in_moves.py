@@ -13,7 +13,7 @@ import numpy as np
 
 from gcxform.contract.passes import resolved
 from gcxform.modal.interpreter import Interpreted
-from gcxform.pipeline.chain import compensates_cycles
+from gcxform.pipeline.chain import compensates
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.syntax.scan import Window
@@ -27,14 +27,13 @@ def said_in_moves(
     """Return the path of a window, in which such blocks are plain moves. Raises InputError.
 
     They become so behind the last of the steps that prove their paths by what they were given;
-    `done` is how many have been run. With such a step cycles stay, to be refused by who writes.
+    `done` is how many have been run.
     """
-    resolves = resolved(plan.path_passes)
-    if done != resolves:
+    if done != resolved(plan.path_passes):
         return path
     path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
-    whole = compensates_cycles(plan.path_passes)
-    if resolves or not (foreign or whole) or not (path.form == Form.CYCLE).any():
+    whole = compensates(plan.path_passes)
+    if not (foreign or whole) or not (path.form == Form.CYCLE).any():
         return path
     with placing(window, file):
         here = np.isin(read.modes.cycle[path.block], list(foreign))

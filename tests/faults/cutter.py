@@ -29,6 +29,20 @@ def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
 
 MUTATIONS = (
     Mutation(
+        "cutter: how a contour is resolved is guessed where a parameter decides it",
+        "gcxform/pipeline/cutter_comp.py",
+        "if len(ways) != 1:",
+        "if not ways:",
+        f"{CORPUS}[cutter-comp/gx233-volumetric]",
+    ),
+    Mutation(
+        "cutter: that the control's offsets act no more is not said",
+        "gcxform/pipeline/cutter_comp.py",
+        "(ways[0], *plan.passes)), (RESOLVED,)",
+        "(ways[0], *plan.passes)), ()",
+        f"{CORPUS}[volumetric/contour]",
+    ),
+    Mutation(
         "cutter: a negative diameter keeps its side",
         "gcxform/modal/moves/cutter_comp.py",
         "np.where(radius < 0, -SIDES[code], SIDES[code])",

@@ -90,7 +90,7 @@ MUTATIONS = (
     Mutation(
         "saying: ways home are moves before a step resolves compensation",
         "gcxform/pipeline/said_in_moves.py",
-        "    if done != resolves:",
+        "    if done != resolved(plan.path_passes):",
         "    if done:",
         HERE,
     ),

@@ -132,7 +132,7 @@ FAULTS = (
     (
         "a cycle under compensation is written as one that is still called",
         "gcxform/pipeline/chain.py",
-        "return compensates_cycles(passes) or any(",
+        "return compensates(passes) or any(",
         "return any(",
         f"{CASE}[volumetric/cycle]",
     ),

@@ -34,6 +34,8 @@ class CutterComp(gx.CompensationPass):
     corner. What the tool cannot reach without cutting into the contour is refused. For LinuxCNC the
     path is the one that its interpreter executes. Other controls leave `corners` and `entry` to
     parameters of the machine: say what they are set to.
+
+    Where the errors of a machine are taken off a program for LinuxCNC that is done by itself.
     """
 
     name = "cutter-comp"
