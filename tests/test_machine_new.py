@@ -7,6 +7,11 @@ from pathlib import Path
 import pytest
 from cli_kit import call, workplace
 
+from gcxform.cli.program.used import used_by
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+
 PECKS = "%\nO0001\nG90 G21 G94 G54 G0 X10 Y10.\nG43 H3 Z50.\nG73 Z-9. R2. Q2. F99.\nG80\nM30\n%\n"
 OFFSETS = """%
 O0002
@@ -214,3 +219,11 @@ def test_a_compensation_asks_where_things_are_before_any_file_says_it(
     fill_in(here / "m.toml", tool_length_alone='"shifts"', ends='"unchanged"')
     done = call("run", "-q", "-f", "fanuc", "-m", "m.toml", "-x", chain, "part.nc")
     assert done.exit_code == 0, done.stderr
+
+
+def test_the_radius_of_the_tool_in_the_spindle_is_asked_for() -> None:
+    """G41 without D takes it in LinuxCNC, and no other; a Fanuc has a D in force, or none."""
+    program = b"G21\nT3\nT7 M6\nT4\nG41 X10.\nG40 X20.\nT9 M6\nG42 D2 X3.\n"
+    for dialect, tools in (("linuxcnc", {"7", "2"}), ("fanuc", {"2"})):
+        kind = default_registry().dialect(dialect)
+        assert {*used_by(Source.of_bytes(program), kind, Reading()).radii} == tools

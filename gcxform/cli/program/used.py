@@ -90,7 +90,26 @@ def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
             if meaning.acts or meaning.lost_by or "D" in meaning.slots:
                 for line in np.flatnonzero(window.shape == number).tolist():
                     _look(used, dialect, _Block(source, window, meaning, line))
+    if not dialect.cutter_comp.stored:
+        _look_into_spindle(used, source, dialect)
     return used
+
+
+def _look_into_spindle(used: Used, source: Source, dialect: type[Dialect]) -> None:
+    """Note the tools that G41 and G42 take without a D: those that are in the spindle there."""
+    selected = spindle = 0.0
+    for window, reader in windows_of(source, dialect):
+        reader.table.update()
+        meanings = reader.table.meanings
+        said = ("T" in m.slots or m.changes_tool or m.compensates for m in meanings)
+        known = np.fromiter(said, np.bool_, len(meanings))
+        for line in np.flatnonzero(known[window.shape]).tolist():
+            block = _Block(source, window, meanings[int(window.shape[line])], line)
+            slots = block.meaning.slots
+            selected = block.value(slots["T"]) if "T" in slots else selected
+            spindle = selected if block.meaning.changes_tool else spindle
+            if block.meaning.compensates and "D" not in slots and spindle > 0:
+                used.radii.setdefault(f"{spindle:g}", block.place)
 
 
 @dataclass(frozen=True)
