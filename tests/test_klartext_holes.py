@@ -1,4 +1,4 @@
-"""Cycles 201, 240, 220 and 221 of a TNC as moves, with the examples of the manuals.
+"""Cycles 201, 203, 240, 220, 221 and PATTERN DEF of a TNC as moves, as the manuals have them.
 
 Cycle 220: TNC 640, cycles (34059x-01), p. 162; cycle 221: TNC 410, ISO, p. 257.
 """
@@ -7,9 +7,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from heidenhain_kit import TOOLS, program, read
+from gcxform_plugins.passes.absolute import Absolute
+from heidenhain_kit import DIALECT, TOOLS, program, read
 
 import gcxform as gx
+from gcxform.modal.state import Reading
+from gcxform.pipeline.pipeline import Pipeline
+
+START = {"X": 0.0, "Y": 0.0, "Z": 50.0}
 
 REAM = "CYCL DEF 201 REAMING Q200=2 Q201=-15 Q206=100 Q211=0.5 Q208=250 Q203=+0 Q204=20"
 CENTRE = "CYCL DEF 240 CENTERING Q200=1 Q343=0 Q201=-2 Q344=-9 Q206=150 Q211=0 Q203=+0 Q204=20"
@@ -66,6 +71,69 @@ def test_a_cycle_may_be_run_by_two_patterns():
     row = ROW.format(1, 0, COMMON)
     path, _ = moves(CENTRE, row, row)
     assert (path.kind == 1).sum() == 12
+
+
+UNIVERSAL = (
+    "CYCL DEF 203 UNIVERSAL DRILLING ~",
+    "Q200=2 ~",
+    "Q201=-5 ~",
+    "Q206=150 ~",
+    "Q202=5 ~",
+    "Q210=0 ~",
+    "Q203=+10 ~",
+    "Q204=20 ~",
+    "Q212=0 ~",
+    "Q213=3 ~",
+    "Q205=1 ~",
+    "Q211=0.5 ~",
+    "Q208=500 ~",
+    "Q256=0.2",
+)
+POINTS = (
+    "PATTERN DEF ~",
+    "POS1( X+3 Y+4 Z+0 ) ~ ; the first",
+    "POS2 (X-5,5 Y+6 Z+0)",
+    "L X+0 Y+0 Z+30 FMAX",
+)
+
+
+def test_a_hole_of_one_stroke_leaves_at_its_own_feed():
+    path = read(program(*UNIVERSAL, "L X+1 Y+2 Z+30 FMAX", "CYCL CALL M3"), start=START)
+    assert path.end[1:, 2].tolist() == [12, 5, 12, 30]
+    assert path.feed[2:4].tolist() == [150, 500]
+    assert [event.what for event in path.events if event.row == 1][:1] == ["M3"]
+
+
+def test_a_cycle_is_called_at_each_place_in_order():
+    path = read(program(*UNIVERSAL, *POINTS, "CYCL CALL PAT FMAX M8"), start=START)
+    there = path.end[[1, 6], :2].tolist()
+    assert there == [[3, 4], [-5.5, 6]]
+    assert path.end[[1, 6], 2].tolist() == [30, 30]
+    assert path.end[-1].tolist()[:3] == [-5.5, 6, 30]
+
+
+@pytest.mark.parametrize(
+    ("lines", "why"),
+    [
+        (("PATTERN DEF ~", "POS1( X+3 Y+4 Z+1 )"), "another Z"),
+        (("PATTERN DEF ROW1 (X+3 Y+4 D+5 NUM3 ROT+0 Z+0)",), "other than POS"),
+        ((*POINTS, "L Z+40 FMAX", "CYCL CALL PAT FMAX"), "from elsewhere"),
+        ((*POINTS, "CYCL CALL PAT F500"), "is not resolved"),
+        ((*POINTS, "CYCL CALL POS X+1 Y+1 Z+0 FMAX"), "is not resolved"),
+        (("L Z+30 FMAX", "CYCL CALL PAT FMAX"), "no cycle and places"),
+        ((*POINTS, "CYCL CALL M9"), "at the end of a call"),
+    ],
+)
+def test_places_that_are_not_certain_are_refused(lines, why):
+    with pytest.raises(gx.InputError, match=why):
+        read(program(*UNIVERSAL, *lines), start=START)
+
+
+def test_places_that_are_kept_are_not_those_before():
+    points = (*POINTS, "PATTERN DEF ROW1 (X+3 Y+4 D+5 NUM3 ROT+0 Z+0)", "CYCL CALL PAT FMAX")
+    text = program(*UNIVERSAL, *points, "L IX+5 FMAX")
+    result = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading(START)).run(text.encode())
+    assert result.text.decode() == text
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from itertools import islice
 from typing import Any
@@ -18,6 +18,8 @@ DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)
 SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
 SHIFTED = re.compile(rf"(I?)([XYZABCUVW])\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))\s*")
 DATUM = re.compile(r"TRANS\s+DATUM\s+(?:AXIS\s+(.*?)|RESET)\s*")
+CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
+PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
@@ -43,6 +45,7 @@ class Cycles(Parameters):
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
         self.bounded = False
+        self.places: list[tuple[str, str]] = []
         self.by_cycle = True
 
     def define(self, item: gx.Item) -> list[str]:
@@ -72,9 +75,59 @@ class Cycles(Parameters):
         self.refuse(f"CYCL DEF {number} {text}".rstrip() + " is a cycle of the control", item)
 
     def _call(self, item: gx.Item) -> list[str]:
-        if re.fullmatch(r"CYCL\s+CALL\s*", item.name):
-            return self.called(item)
-        self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+        """CYCL CALL: the cycle where the tool stands, or at the places of PATTERN DEF."""
+        match = CALLED.fullmatch(item.name)
+        if match is None:
+            self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+        numbers = re.findall(r"\d+", match[2])
+        said = self.said([gx.Item("m", ("M",), (number,), item.place) for number in numbers])
+        if said.after or said.calls or said.end or said.machine:
+            self.refuse("an M function at the end of a call", item)
+        return [*said.before, *(self._at_places(item) if match[1] else self.called(item))]
+
+    def pattern(self, item: gx.Item) -> list[str]:
+        """PATTERN DEF: the places of holes, one by one."""
+        self.places = []
+        parts = [item.name.partition("DEF")[2]]
+        while self.lines[self.at - 1].partition(";")[0].rstrip().endswith("~"):
+            parts.append(self.lines[self.at].upper().partition(";")[0])
+            self.at += 1
+        found = PLACE.sub(self._placed, " ".join(parts).replace("~", " "))
+        if found.strip() or not self.places:
+            self.refuse("PATTERN DEF with other than POS, or with another Z than 0", item)
+        return []
+
+    def _placed(self, found: re.Match[str]) -> str:
+        x, y, z = (plain(number) for number in found.groups())
+        if float(z):
+            return found[0]
+        self.places.append((x, y))
+        return ""
+
+    def _at_places(self, item: gx.Item) -> list[str]:
+        """CYCL CALL PAT: the cycle at each place, in rapid at the second set-up clearance.
+
+        Whether the tool goes from hole to hole there, or where it was, is only then the same.
+        """
+        self.refuse_beside("a cycle", item)
+        if self.cycle not in HOLES or self.following or not self.places:
+            raise self.refusal("GX215", "no cycle and places that are known here", item)
+        height = self.hole.get(203, Decimal(0)) + self.hole.get(204, Decimal(0))
+        if not self.hole.get(204) or self.stands_at("Z", item, "CYCL CALL PAT") != height:
+            message = "CYCL CALL PAT from elsewhere than Q203 + Q204: how high it then goes is open"
+            raise self.refusal("GX215", message, item, "go up there in a line before")
+        return self._holes(item, self.places, self.hole)
+
+    def _holes(
+        self, item: gx.Item, places: Sequence[tuple[str, str]], hole: dict[int, Decimal]
+    ) -> list[str]:
+        """Return the blocks of a hole at each place, from one to the next in rapid."""
+        blocks = []
+        for x, y in places:
+            self.place |= {"X": x, "Y": y}
+            blocks += [f"G0 X{x} Y{y}", *self._hole(item, hole)]
+        self.moved |= {"X", "Y"}
+        return blocks
 
     def assigned(self, key: str) -> None:
         """Forget a cycle of which a parameter is set: whether it then counts is not known."""
@@ -261,11 +314,7 @@ class Cycles(Parameters):
         if self.stands_at("Z", item, f"cycle {number}") != told[203] + told[204]:
             message = "a pattern whose first hole is reached from elsewhere than Q203 + Q204"
             raise self.refusal("GX215", message, item, "go up there in a line before")
-        blocks = []
-        for x, y in places:
-            self.place |= {"X": x, "Y": y}
-            blocks += [f"G0 X{x} Y{y}", *self._hole(item, hole)]
-        self.moved |= {"X", "Y"}
+        blocks = self._holes(item, places, hole)
         self.given(told.items())  # whether they count for a cycle that is called next is not known
         self.hole = {n: v for n, v in self.hole.items() if told.get(n, v) == v}
         return blocks

@@ -4,6 +4,7 @@
 |---|---|---|
 | 200, 240 | to Q200 over Q203, down at Q206, dwell Q211, out in rapid | [K] |
 | 201 | the same, but to Q200 over Q203 at Q208, at Q206 where that is 0 | a simulator of TNC 426 |
+| 203 | as 201, where Q202 is as deep as the hole: then it is one stroke | TNC 430, p. 244 |
 | 220 | Q241 holes from Q245 on, by Q247; where that is 0 up to Q246, or around | 640, p. 162 |
 | 221 | Q242 holes from Q225, Q226 on, by Q237 along Q224 | 410 ISO, p. 257 |
 
@@ -37,6 +38,11 @@ TIP = {395: "a depth of the tip or of the full diameter"}
 HOLES: Mapping[int, Hole] = {
     200: Hole((200, 201, 206, 202, 203, 204, 211), {**TIP, 210: "a dwell above"}),
     201: Hole((200, 201, 206, 211, 208, 203, 204)),
+    203: Hole(
+        (200, 201, 206, 202, 203, 204, 211, 208),
+        {**TIP, 210: "a dwell above"},
+        (212, 213, 205, 256),
+    ),
     240: Hole((200, 343, 201, 206, 211, 203, 204), {343: "a depth by the diameter"}, (344,)),
 }
 COMMON = 200, 203, 204, 301

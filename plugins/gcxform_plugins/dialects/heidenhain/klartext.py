@@ -62,6 +62,7 @@ class Klartext(Cycles):
             "CALL": self.call,
             "SEL": self.select,
             "TRANS": self.datum,
+            "PATTERN": self.pattern,
             **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
             "FUNCTION": self._function_of,
         }

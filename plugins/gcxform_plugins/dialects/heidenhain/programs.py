@@ -32,7 +32,7 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected", "by_cycle", "plane"),
+    *("selected", "by_cycle", "plane", "places"),
 )
 CHANGING = frozenset((dict, list, set))
 """The types of what is changed in its place: as it was it is known by a copy alone."""
@@ -118,6 +118,8 @@ class Programs(Runs):
         self.lose()
         self.pole, self.motion, self.plainly = {}, "", False
         said = {item.kind for item in items}
+        if "text" in said:
+            self.places = []
         if "text" in said and not QUIET.match(words):
             self.q, self.side, self.aside = dict.fromkeys(self.q), "", True
             self.feed_lost, self.in_spindle, self.cycle = True, "", -1
