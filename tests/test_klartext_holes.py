@@ -130,7 +130,8 @@ def test_places_that_are_not_certain_are_refused(lines, why):
 
 
 def test_places_that_are_kept_are_not_those_before():
-    points = (*POINTS, "PATTERN DEF ROW1 (X+3 Y+4 D+5 NUM3 ROT+0 Z+0)", "CYCL CALL PAT FMAX")
+    row = "PATTERN DEF ROW1 (X+3 Y+4 D+5 NUM3 ROT+0 Z+0)"
+    points = (*POINTS, row, POINTS[-1], "CYCL CALL PAT FMAX")
     text = program(*UNIVERSAL, *points, "L IX+5 FMAX")
     result = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading(START)).run(text.encode())
     assert result.text.decode() == text

@@ -90,11 +90,6 @@ def test_arcs_of_other_planes_are_circles_about_a_centre_there(arc, lines):
 LEADING = ("L X+0 Y+0 Z+5 FMAX",)
 
 
-def test_an_arc_of_another_plane_may_be_a_little_off_by_its_radius():
-    found, _ = said("G18 G2 X1.2345 Z6.1 R7.7777 F100.")
-    assert found[0].startswith("CC Z")
-
-
 def test_an_arc_of_another_plane_has_no_words_where_it_is_a_helix():
     with pytest.raises(gx.GcxformError, match="out of XY has no words"):
         said("G18 G2 X5. Y1. Z5. I2.5 K0. F100.")

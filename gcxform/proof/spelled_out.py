@@ -23,7 +23,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame
-from gcxform.toolpath.path import Event, Form, Kind, Plane, Toolpath
+from gcxform.toolpath.path import Event, Form, Kind, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 LENGTH = "the length of a tool counts from its change on, and here it should not"
@@ -91,8 +91,7 @@ def _differences(
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
-    by_size = np.where(a.plane == Plane.XY, near, near + ROUND)  # computed, where there is no R
-    yield from _first(~_same(a.centre, b.centre, by_size[:, None]).all(axis=1), "a centre")
+    yield from _first(~_same(a.centre, b.centre, near[:, None]).all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
     yield from _first(counts, "a work offset, or a length")

@@ -32,7 +32,37 @@ PLANES = f"{TARGET}::test_arcs_of_other_planes_are_circles_about_a_centre_there"
 APPROACH = "plugins/gcxform_plugins/dialects/heidenhain/approach.py"
 ONTO = "tests/test_klartext_approach.py"
 
+HOLE_TESTS = "tests/test_klartext_holes.py"
+
 MUTATIONS = (
+    Mutation(
+        "klartext: places are gone to from any height",
+        CYCLES,
+        'if not self.hole.get(204) or self.stands_at("Z", item, "CYCL CALL PAT") != height:',
+        "if False:",
+        f"{HOLE_TESTS}::test_places_that_are_not_certain_are_refused",
+    ),
+    Mutation(
+        "klartext: places have no surface of their own",
+        CYCLES,
+        "        if float(z):\n",
+        "        if False:\n",
+        f"{HOLE_TESTS}::test_places_that_are_not_certain_are_refused",
+    ),
+    Mutation(
+        "klartext: places hold behind others that are kept",
+        BACK,
+        "            self.places = []",
+        "            pass",
+        f"{HOLE_TESTS}::test_places_that_are_kept_are_not_those_before",
+    ),
+    Mutation(
+        "klartext: a call forgets its M function",
+        CYCLES,
+        "[*said.before, *(self._at_places(item)",
+        "[*(self._at_places(item)",
+        f"{HOLE_TESTS}::test_a_hole_of_one_stroke_leaves_at_its_own_feed",
+    ),
     Mutation(
         "klartext: DEP LT ends on the contour",
         APPROACH,
@@ -111,10 +141,10 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain-circle-zx]",
     ),
     Mutation(
-        "klartext: a written arc by its radius is on the other side",
+        "klartext: a written arc out of XY is about a place elsewhere",
         LINES,
-        "aside *= 1 if (radius > 0) ==",
-        "aside *= 1 if (radius > 0) !=",
+        'CENTRES = dict(zip("XYZ", "IJK", strict=True))',
+        'CENTRES = dict(zip("XYZ", "IKJ", strict=True))',
         PLANES,
     ),
     Mutation(

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from decimal import Decimal
-from math import atan2, degrees, hypot, sqrt
+from math import atan2, degrees
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.words import exact
@@ -26,7 +26,6 @@ TIP = (128, 129)
 BEFORE = frozenset((3, 4, 7, 8))
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
-DIGITS = 4  # decimals of a centre that is computed
 SIDES = {"G40": " R0", "G41": " RL", "G42": " RR"}
 TURN = 360.0
 LEAST = 1e-4  # degrees
@@ -236,7 +235,9 @@ class Lines(gx.Speller):
         if self.waits != self.side:
             raise gx.UnspeakableError("a contour begins and ends in lines, not in arcs")
         if self.plane != "G17":
-            yield from self._aside(ends, values, radius, turns, f"{sense}{feed}")
+            if radius is not None or turns > 1:
+                raise gx.UnspeakableError("an arc by its radius, or of many turns, out of XY")
+            yield from self._aside(ends, values, f"{sense}{feed}")
             return
         if radius is not None:
             if set(ends) - {"X", "Y"} or turns > 1:
@@ -256,47 +257,21 @@ class Lines(gx.Speller):
         self.rounded |= {"X", "Y"}
         yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
 
-    def _aside(
-        self,
-        ends: dict[str, Decimal],
-        values: dict[str, str],
-        radius: str | None,
-        turns: int,
-        rest: str,
-    ) -> Iterator[str]:
+    def _aside(self, ends: dict[str, Decimal], values: dict[str, str], rest: str) -> Iterator[str]:
         """Yield CC and C of an arc out of XY. Raises UnspeakableError."""
         axes = PLANES[self.plane]
-        if set(ends) - {*axes} or turns > 1 or self.side != " R0":
+        if set(ends) - {*axes} or self.side != " R0":
             raise gx.UnspeakableError("a helix or a contour out of XY has no words in Klartext")
         start = {axis: self.place[axis] for axis in axes}
         step = start if self.steps else dict.fromkeys(axes, Decimal(0))
         there = {a: ends[a] + step[a] if a in ends else start[a] for a in axes}
         if there == start and self.rounded & {*axes}:
             raise gx.UnspeakableError("a whole turn from where a helix ends, out of XY")
-        if radius is None:
-            pole = {a: start[a] + Decimal(values.pop(CENTRES[a], "0")) for a in axes}
-        else:
-            pole = self._centre(start, there, float(radius))
+        pole = {a: start[a] + Decimal(values.pop(CENTRES[a], "0")) for a in axes}
         self.place |= there
         self.rounded -= {*axes}
         yield f"CC{_words(pole)}"
         yield f"C{_words(there)}{rest}"
-
-    def _centre(
-        self, start: dict[str, Decimal], end: dict[str, Decimal], radius: float
-    ) -> dict[str, Decimal]:
-        """Return the centre of an arc by its radius, rounded. Raises UnspeakableError."""
-        first, second = start
-        by = float(end[first] - start[first]), float(end[second] - start[second])
-        size = hypot(*by)
-        if not size:
-            raise gx.UnspeakableError("an arc by its radius that ends where it starts")
-        aside = sqrt(max(0.0, radius**2 - size**2 / 4)) / size
-        aside *= 1 if (radius > 0) == (self.motion == "G3") else -1
-        middle = (float(start[a] + end[a]) / 2 for a in start)
-        normal = -by[1], by[0]
-        found = (m + aside * n for m, n in zip(middle, normal, strict=True))
-        return {a: Decimal(f"{c:.{DIGITS}f}") for a, c in zip(start, found, strict=True)}
 
     def _whole(self, ends: dict[str, Decimal]) -> bool:
         """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
