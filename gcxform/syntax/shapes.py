@@ -11,7 +11,7 @@ meanings, as they are to the control.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import field, replace
 from itertools import repeat
 
 import numpy as np
@@ -37,13 +37,13 @@ def slots_of(block: Block) -> list[Number | Expression]:
 class Shape:
     """A tree and the values in its slots; `own`: it stands for one text only.
 
-    `layout` is that of an outline: its slots begin with these.
+    `layout` is that of an outline: its slots begin with these. Shapes of equal trees are equal.
     """
 
     block: Block
-    slots: tuple[Number | Expression, ...]
-    own: bool
-    layout: Layout | None = None
+    slots: tuple[Number | Expression, ...] = field(compare=False)
+    own: bool = field(compare=False)
+    layout: Layout | None = field(default=None, compare=False)
 
 
 class ShapeTable:

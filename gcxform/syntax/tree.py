@@ -112,6 +112,10 @@ class Block:
     items: tuple[Item, ...]
     error: tuple[int, str] | None = None
 
+    def __hash__(self) -> int:
+        """Return the hash of the text: few blocks of one text differ, and a tree is long."""
+        return hash(self.text)
+
     @property
     def words(self) -> Iterator[Word]:
         """The address words in order."""
