@@ -16,7 +16,7 @@ from hypothesis import HealthCheck, Phase, settings
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.filter_too_much]
 settings.register_profile("dev", max_examples=30, deadline=None, suppress_health_check=SLOW)
 settings.register_profile(
-    "ci", max_examples=75, deadline=None, derandomize=True, suppress_health_check=SLOW
+    "ci", max_examples=50, deadline=None, derandomize=True, suppress_health_check=SLOW
 )
 settings.register_profile(  # that it fails is enough: the least example is not looked for
     "faults",

@@ -58,7 +58,7 @@ FAILED, BROKEN = 1, 99  # FAILED is pytest's exit code for tests that failed
 NOT_SWAPPED = 98
 TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed too
 REMEMBERED = ROOT / "tests" / "faults" / "noticed.txt"
-LONG = 1.0  # seconds of a processor
+LONG = 0.7  # seconds of a processor
 SLOWEST = 20  # so many are named in the end
 SAID, NOTICED = "said.txt", "noticed.txt"  # what pytest prints, and which test failed
 
