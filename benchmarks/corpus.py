@@ -62,7 +62,7 @@ STANDING = re.compile(r"lines .* \((\d+)\) stand as they do")
 """What a certificate says of lines that are not understood, and of others that stay as they do."""
 MOST_KEPT = {"siemens": 140}
 """Lines of programs that may be kept as not understood."""
-SECONDS = 120
+SECONDS = 120  # of a processor
 START = Reading({"X": 0.0, "Y": 0.0, "Z": 0.0})
 """Many programs leave an axis where it is: the machine is taken to stand at its origin."""
 NUMBERS = gx.NumberFormat(mm=4, inch=5, angle=4)
@@ -187,18 +187,18 @@ def run(job: Job) -> Outcome:
     """Run a program through its chain."""
     try:
         with_limit = filled_in(job.dialect, job.path, job.chain, job.corpus)
-        signal.signal(signal.SIGALRM, _too_long)
-        signal.alarm(SECONDS)
+        signal.signal(signal.SIGPROF, _too_long)
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
         result = with_limit.run(job.corpus / job.path)
     except gx.GcxformError as error:
         first = error.diagnostics[0]
         return Outcome(job, first.code, first.message, first.where.line if first.where else 0)
     except TimeoutError:
-        return Outcome(job, "TIME", f"not done after {SECONDS} s")
+        return Outcome(job, "TIME", f"not done after {SECONDS} s of a processor")
     except Exception as error:
         return Outcome(job, "CRASH", repr(error))
     finally:
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
     if not result.certificate.verified:
         return Outcome(job, "NOT VERIFIED")
     lost = what_is_lost(job.text, result.text, job.dialect)

@@ -25,7 +25,7 @@ from seeds_kit import shares
 
 import gcxform as gx
 
-COUNT = 5 * laws.EXAMPLES
+COUNT = max(5 * laws.EXAMPLES, 150)  # of fewer none stays in inverse time
 INVERSE, MINUTE = "feed mode=inverse-time", "feed mode=per-minute"
 CUTS = ("segment chord-error=5um", "segment arcs=split arc-step=20deg max-length=7mm", "plane")
 CHAINS = (
