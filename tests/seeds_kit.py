@@ -14,8 +14,8 @@ DRAWN = settings.default.max_examples if LONG else min(20, settings.default.max_
 
 
 def some(count: int) -> range:
-    """Return the seeds that are tried, of so many over night: three in ten of them."""
-    return range(count if LONG else max(3 * count // 10, 1))
+    """Return the seeds that are tried, of so many over night: two in five of them."""
+    return range(count if LONG else max(2 * count // 5, 1))
 
 
 def shares(count: int, size: int) -> pytest.MarkDecorator:
