@@ -4,9 +4,10 @@
 
 The packages are copied to temporary directories, as many as run at a time. A fault is written into
 a copy, and the tests of the fault run on it until one fails. A fault that no test notices survives;
-then the exit code is 1. Which test noticed is printed; in the end all these run on a copy without
-any fault, where they must pass. The faults are listed in `tests/faults/`. The seconds are those of
-a processor, and the twenty faults that took most are named in the end.
+then the exit code is 1. Which test noticed is printed; in the end those of these that passed with
+no other fault run on a copy without any, where they must pass. The faults are listed in
+`tests/faults/`. The seconds are those of a processor, and the twenty faults that took most are
+named in the end.
 
 A fault is tried first in a copy of a process that has loaded gcxform, in which the code of a few
 functions is replaced (`swapping.py`); commands that a test starts find it in the copied packages.
@@ -60,7 +61,8 @@ TIMEOUT = 180  # seconds for one set of tests; a mutant that hangs is noticed to
 REMEMBERED = ROOT / "tests" / "faults" / "noticed.txt"
 LONG = 0.7  # seconds of a processor
 SLOWEST = 20  # so many are named in the end
-SAID, NOTICED = "said.txt", "noticed.txt"  # what pytest prints, and which test failed
+SAID, NOTICED, PASSED = "said.txt", "noticed.txt", "passed.txt"
+"""What pytest prints, which test failed, and which passed before it."""
 
 
 # --- copies ---
@@ -105,7 +107,8 @@ Job = tuple[Mutation | None, list[str]]  # a fault, or none, and the tests to ru
 
 def started(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     """Run tests on the packages in a folder, in a copy of this process; return its number."""
-    (folder / NOTICED).write_text("", encoding="utf-8")
+    for name in (NOTICED, PASSED):
+        (folder / name).write_text("", encoding="utf-8")
     sys.stdout.flush()
     number = os.fork()
     if number == 0:
@@ -143,7 +146,7 @@ def tested(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     options += PLUGINS
     options += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # of what is imported already
     named = frozenset(test.partition("::")[2].partition("[")[0] for test in tests)
-    return int(pytest.main([*options, *tests], plugins=[Noticed(folder / NOTICED, named)]))
+    return int(pytest.main([*options, *tests], plugins=[Noticed(folder, named)]))
 
 
 def homes(folder: Path) -> list[str]:
@@ -160,20 +163,26 @@ def swapped(mutation: Mutation, loaded: swapping.Loaded) -> bool:
 
 @dataclass
 class Noticed:
-    """Draws up the functions of a file that are named, and writes down which test failed."""
+    """Draws up the functions of a file that are named, and writes down what became of each test."""
 
-    file: Path
+    folder: Path
     named: frozenset[str]  # an empty name is the whole file
+
+    def __post_init__(self) -> None:
+        self.passed: list[str] = []
 
     def pytest_pycollect_makeitem(self, name):  # type: ignore[no-untyped-def]
         return None if "" in self.named or name in self.named else []
 
     def pytest_sessionfinish(self) -> None:
+        (self.folder / PASSED).write_text("\0".join(self.passed), encoding="utf-8")
         gc.freeze()  # pytest looks for garbage five times before it ends, which took half a second
 
     def pytest_runtest_logreport(self, report) -> None:  # type: ignore[no-untyped-def]
         if report.failed:
-            self.file.write_text(report.nodeid, encoding="utf-8")
+            (self.folder / NOTICED).write_text(report.nodeid, encoding="utf-8")
+        elif report.when == "call" and report.passed:
+            self.passed.append(report.nodeid)
 
 
 def ended() -> tuple[int, int, float]:
@@ -191,7 +200,10 @@ def ended() -> tuple[int, int, float]:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What became of a job; `test` is the one that failed, empty where none did or one hung."""
+    """What became of a job; `test` is the one that failed, empty where none did or one hung.
+
+    `passed` are the tests that did, with the fault.
+    """
 
     job: Job
     code: int
@@ -199,6 +211,7 @@ class Verdict:
     said: str
     seconds: float
     anew: bool  # whether gcxform was loaded for it
+    passed: frozenset[str] = frozenset()
 
     @property
     def word(self) -> str:
@@ -223,8 +236,11 @@ def finished(
         if job[0]:
             mended(job[0], folder)
         free.append(folder)
-        test, said = ((folder / name).read_text("utf-8", "replace") for name in (NOTICED, SAID))
-        yield Verdict(job, code, test, said[-3000:], seconds, loaded is None)
+        test, said, passed = (
+            (folder / name).read_text("utf-8", "replace") for name in (NOTICED, SAID, PASSED)
+        )
+        others = frozenset(passed.split("\0"))
+        yield Verdict(job, code, test, said[-3000:], seconds, loaded is None, others)
 
 
 def finished_loaded(jobs: list[Job], folders: list[Path]) -> Iterator[Verdict]:
@@ -280,12 +296,15 @@ def remember(found: list[tuple[Mutation, Verdict]]) -> None:
 def failing(found: list[Verdict], folders: list[Path]) -> list[str]:
     """Return what is said of tests that fail without a fault, a file at a time.
 
-    They run as they did when they noticed one: in a gcxform that was loaded for it, or before.
+    They run as they did when they noticed one: in a gcxform that was loaded for it, or before. One
+    that so passed with another fault fails because of its own.
     """
     said = []
     for finish, anew in ((finished_loaded, False), (finished, True)):
         by_file: dict[str, list[str]] = defaultdict(list)
-        for test in sorted({one.test for one in found if one.anew == anew} - {""}):
+        mine = [one for one in found if one.anew == anew]
+        passed = frozenset[str]().union(*(one.passed for one in mine))
+        for test in sorted({one.test for one in mine} - passed - {""}):
             by_file[test.partition("::")[0]].append(test)
         jobs: list[Job] = [(None, some) for some in sorted(by_file.values(), key=len, reverse=True)]
         verdicts = list(finish(jobs, folders)) if jobs else []
