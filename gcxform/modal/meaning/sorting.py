@@ -7,8 +7,6 @@ that can be refused without knowing the numbers is found here.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
-from typing import Any
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
@@ -42,21 +40,10 @@ COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""
 LENT = "DIJKLPQR"
 """Words of which a block has one value for all of its codes, its move among them."""
-LATELY = 8192  # shapes whose meanings are kept
 
 
 def meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
-    """Return what the blocks of a shape mean in a dialect.
-
-    The flow, the reader, the writer and the proof ask, each for a table of its own; nobody changes
-    the answer, which hangs on the tree alone.
-    """
-    key: Any = dialect  # which mypy takes for unhashable
-    return _meaning_of(shape, key)
-
-
-@lru_cache(LATELY)
-def _meaning_of(shape: Shape, dialect: type[Dialect]) -> Meaning:
+    """Return what the blocks of a shape mean in a dialect."""
     meaning = Meaning()
     for refusal in _read(shape, dialect, meaning):
         meaning.refusal = refusal

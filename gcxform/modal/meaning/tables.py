@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.meaning.meaning import FRAMING, OWN_MOVES, PRESETS, Meaning
 from gcxform.modal.meaning.sorting import meaning_of
-from gcxform.syntax.shapes import ShapeTable
+from gcxform.syntax.shapes import Shape, ShapeTable
 from gcxform.system.arrays import Flags, Ints, Small
 
 GROUPS = (
@@ -152,6 +153,19 @@ def _calls(meaning: Meaning) -> bool:
     return any(NUMBER.get(code) in CYCLES for code in meaning.groups.values())
 
 
+LATELY = 8192  # shapes whose meanings are kept
+
+
+@lru_cache(LATELY)
+def _lately(shape: Shape, dialect: Any) -> Meaning:
+    """Return what a shape means in a dialect, a class.
+
+    The flow, the reader, the writer and the proof ask, each for a table of its own; nobody changes
+    the answer, which hangs on the tree alone.
+    """
+    return meaning_of(shape, dialect)
+
+
 class MeaningTable:
     """Meanings of the shapes of one shape table in one dialect; it grows with the shapes."""
 
@@ -171,7 +185,8 @@ class MeaningTable:
         if not fresh:
             return
         known = len(self.meanings)
-        self.meanings += [meaning_of(shape, self.dialect) for shape in fresh]
+        dialect: Any = self.dialect  # mypy takes a class of its kind for unhashable
+        self.meanings += [_lately(shape, dialect) for shape in fresh]
         room = len(self.groups)
         if room < len(self.meanings):
             more = max(len(self.meanings) - room, room)
