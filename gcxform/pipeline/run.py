@@ -20,6 +20,7 @@ from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
 from gcxform.modal.reader import Apart, WindowReader
 from gcxform.pipeline.blind_moves import check_blind
+from gcxform.pipeline.called_files import not_done_yet
 from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches, with_centre_path
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
@@ -78,8 +79,7 @@ class Run:
         self.leaves = leaves
         self.marks = plan.marks(source)
         self.heads = self._heads()
-        self.source = source
-        self.verify = verify
+        self.source, self.verify = source, verify
         self.text = TextRun(plan.text_passes, plan.target, source.name, self._tell)
         if not plan.copies:
             self.source = written_out(source, plan.read_as, plan.machine_reading, plan.target)
@@ -87,7 +87,7 @@ class Run:
         self.plan, said = with_centre_path(plan, self.source)
         self.steps, self.assumed = self.plan.path_passes, (*self.source.assumed, *said)
         self.executed = getattr(self.source, "executed", None)
-        self.files = getattr(self.source, "files", ())
+        self.files = not_done_yet(plan, getattr(self.source, "files", ()))
         self.structure = structure_of(plan, source, self.source, bool(self.marks.read))
         if self.executed is not None:
             self.executed.refuse(self.marks.changes, self.structure is not None)

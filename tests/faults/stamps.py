@@ -12,6 +12,13 @@ def _fault(name: str, file: str, old: str, new: str) -> Mutation:
 
 
 MUTATIONS = (
+    Mutation(
+        "stamps: those of called files are not looked at",
+        "gcxform/pipeline/called_files.py",
+        "for each in files:",
+        "for each in files[:0]:",
+        "tests/test_called_stamps.py",
+    ),
     _fault(
         "none is read",
         "gcxform/stamps/comment.py",
