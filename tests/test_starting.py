@@ -25,7 +25,7 @@ NEVER = {  # of what no small job needs
     *("tomlkit", "xml"),
 }
 NOT_FOR_WORDS = NEVER | {  # said without a program: help, versions, what a shell completes
-    *("gcxform_plugins", "gcxform.contract", "gcxform.dialect", "gcxform.modal"),
+    *("gcxform_plugins", "gcxform.catalogue", "gcxform.contract", "gcxform.dialect"),
     *("hashlib", "lark", "msgspec", "numpy", "pluggy"),
 }
 NOT_FOR_PLAIN = NEVER | {  # programs: no model, no machine file, no calls, no other language

@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from functools import reduce
 from importlib import import_module
-from pathlib import Path
 from typing import NamedTuple
 
 HEADS = {".dist-info": "METADATA", ".egg-info": "PKG-INFO"}
@@ -39,29 +38,34 @@ def entry_points(group: str) -> list[Point]:
     """Return the entry points of a group; of two distributions of one name the first one's."""
     found: dict[str, list[Point]] = {}
     for folder in sys.path:
-        for info, head in _distributions(folder):
-            name = re.sub(r"[-_.]+", "-", info.stem.partition("-")[0]).lower()
+        for stem, info, head in _distributions(folder):
+            name = re.sub("[-_.]+", "-", stem.partition("-")[0]).lower()
             if name not in found:
-                found[name] = list(_points(info, head, group))
+                found[name] = list(_points(stem, info, head, group))
     return [point for points in found.values() for point in points]
 
 
-def _distributions(folder: str) -> Iterator[tuple[Path, str]]:
-    """Yield the folders that describe distributions, by name, each with the name of its head."""
+def _distributions(folder: str) -> Iterator[tuple[str, str, str]]:
+    """Yield the folders that describe distributions: name without its end, path, name of the head.
+
+    They are sorted, and paths are texts: there are hundreds.
+    """
     names: list[str] = []
     with suppress(OSError):  # no folder: an archive, or what is no longer there
         names = sorted(os.listdir(folder or "."))
     for name in names:
-        if head := HEADS.get(os.path.splitext(name)[1]):
-            yield Path(folder, name), head
+        if name.endswith("-info"):
+            stem, end = os.path.splitext(name)
+            if end in HEADS:
+                yield stem, os.path.join(folder, name), HEADS[end]
 
 
-def _points(info: Path, head: str, group: str) -> Iterator[Point]:
+def _points(stem: str, info: str, head: str, group: str) -> Iterator[Point]:
     """Yield the entry points of a distribution."""
-    text, section = _text(info / "entry_points.txt"), ""
+    text, section = _text(info, "entry_points.txt"), ""
     if f"[{group}]" not in text:
         return
-    origin = _origin(_text(info / head), info.stem)
+    origin = _origin(_text(info, head), stem)
     for line in map(str.strip, text.splitlines()):
         if line.startswith("["):
             section = line.strip("[]")
@@ -77,8 +81,10 @@ def _origin(head: str, stem: str) -> str:
     return f"{said.get('Name', name)} {said.get('Version', version)}"
 
 
-def _text(path: Path) -> str:
+def _text(folder: str, name: str) -> str:
     """Return a file as text, nothing for one that cannot be read."""
-    with suppress(OSError):
-        return path.read_text("utf-8", errors="replace")
-    return ""
+    try:
+        with open(os.path.join(folder, name), encoding="utf-8", errors="replace") as file:
+            return file.read()
+    except OSError:
+        return ""

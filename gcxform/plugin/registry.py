@@ -81,6 +81,7 @@ class Registry:
     facts: Offered[Fact] = field(default_factory=lambda: Offered({f.name: f for f in FACTS}))
     formats: Offered[type[ErrorFormat]] = field(default_factory=Offered)
     diagnostics: list[Diagnostic] = field(default_factory=list)
+    points: list[Point] = field(default_factory=list, repr=False)
     _origins: dict[tuple[str, str], Point] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -93,7 +94,8 @@ class Registry:
         manager = pluggy.PluginManager(hookspecs.PROJECT)
         manager.add_hookspecs(hookspecs)
         points = {}
-        for point in entry_points(hookspecs.GROUP):
+        registry.points = entry_points(hookspecs.GROUP)
+        for point in registry.points:
             name = f"{point.name} of {point.origin}"
             if registry._register(manager, name, point):
                 points[name] = point
@@ -243,8 +245,7 @@ def dialect_of(given: object) -> type[Dialect]:
 @cache
 def versions() -> str:
     """Return which distributions programs are read and written by, with their versions."""
-    points = entry_points(hookspecs.GROUP)
-    return ", ".join(sorted({point.origin for point in points}))
+    return ", ".join(sorted({point.origin for point in default_registry().points}))
 
 
 def _reason(error: BaseException) -> str:

@@ -10,7 +10,6 @@ each verb adds. A document is printed for failures too: what went wrong is in `f
 from __future__ import annotations
 
 import io
-import json
 import math
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -50,6 +49,8 @@ class Answer:
         said["findings"] = [described(each) for each in self.findings]
         more = {"written": self.written, "output": _text(self.output.buffer.getvalue())}  # type: ignore[attr-defined]
         said |= {**{key: value for key, value in more.items() if value}, **self.values}
+        import json
+
         return json.dumps(_plain(said), indent=2, allow_nan=False)
 
 

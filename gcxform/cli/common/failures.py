@@ -13,8 +13,6 @@ from typing import Any, Final, TextIO
 
 import click
 
-from gcxform.catalogue.offers import said_to_chain
-from gcxform.catalogue.questions import questions
 from gcxform.cli.common import DEBUG
 from gcxform.cli.common.answer import ANSWER, Answer
 from gcxform.cli.common.options import ENVIRONMENT
@@ -139,6 +137,8 @@ def _misspelt(error: click.ClickException, found: list[Diagnostic] | None) -> in
 def _asks(error: Exception) -> bool:
     """Whether an error ends if more is said of the program or the machine."""
     found = error.diagnostics if isinstance(error, GcxformError) else ()
+    from gcxform.catalogue.questions import questions
+
     return any(True for each in found for _ in questions(each.hint))
 
 
@@ -171,6 +171,8 @@ def _typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[D
     file = any(word == "--pipeline" or word.startswith("-p") for word in options)
     if file or FOUND in meta or (os.environ.get(ENVIRONMENT) and not chain):
         return list(diagnostics)
+    from gcxform.catalogue.offers import said_to_chain
+
     return [replace(each, hint=said_to_chain(each.hint)) for each in diagnostics]
 
 

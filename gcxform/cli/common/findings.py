@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from gcxform.catalogue.offers import as_table, ways
 from gcxform.diagnostics import Diagnostic, Location
 
 
@@ -14,6 +13,8 @@ def described(found: Diagnostic) -> dict[str, Any]:
     `ways` are the ways out that its hint offers, each of which is enough; each is a list of what it
     takes together (`gcxform.catalogue.offers`).
     """
+    from gcxform.catalogue.offers import as_table, ways
+
     return {
         "code": found.code,
         "severity": found.severity.name.lower(),
