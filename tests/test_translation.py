@@ -12,9 +12,9 @@ import pytest
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform.flow import translation
+from gcxform.flow import line_shapes
 from gcxform.flow.translated import translated
-from gcxform.flow.translation import SLOT
+from gcxform.flow.tree_shapes import SLOT
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
@@ -77,7 +77,7 @@ def _language(monkeypatch):
     from lark import Lark
 
     made = Lark(LARK, parser="lalr", propagate_positions=True, maybe_placeholders=False)
-    monkeypatch.setattr(translation.kept, "grammar", lambda *_: made)
+    monkeypatch.setattr(line_shapes.kept, "grammar", lambda *_: made)
     monkeypatch.setattr(Walk, "asked", 0)
 
 

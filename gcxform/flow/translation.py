@@ -15,48 +15,27 @@ of its own. Numbers stay text, so no digit changes.
 from __future__ import annotations
 
 import re
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
-from functools import cache
-from typing import ClassVar, NoReturn
+from abc import abstractmethod
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar, NoReturn
 
-from lark import Lark, Token
-from lark.exceptions import UnexpectedInput
-
-from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed
-from gcxform.flow.items import Item, Part, part_of
+from gcxform.flow.items import Item
+from gcxform.flow.learned import Learned
+from gcxform.flow.line_shapes import COMMENT, LineShapes, Shape
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
-from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.modal.state import Reading
-from gcxform.syntax import grammar_cache as kept
-from gcxform.syntax.grammar import parsed, refusal_of
 from gcxform.system.limits import how_to_raise, limits
-from gcxform.values import dataclass
 
-COMMENT, BLOCK_DELETE = "comment", "block_delete"
+BLOCK_DELETE = "block_delete"
 HINT = "let the CAM write plain moves in its place"
-LATELY = 4096  # shapes with numbers in names and comments that are kept
 QUICK = 4  # lines that are only translated, in the time of one that is executed
-BRACKETS = str.maketrans("()", "[]")
 
 
-@dataclass(frozen=True, slots=True)
-class _Shape:
-    """The parts of all lines that differ only in their numbers, and their comments.
-
-    `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
-    """
-
-    parts: tuple[Part, ...]
-    comments: str
-    template: str
-    routine: bool = False
-
-
-class Translator(ABC):
+class Translator(LineShapes):
     """Turns the lines of one program into blocks; one is made for each program.
 
     The children of the grammar's `start` are the items of a line. Two kinds are seen to here:
@@ -64,26 +43,24 @@ class Translator(ABC):
     carry on at another line by setting `at`, which counts from 0.
     """
 
-    grammar: ClassVar[tuple[str, str]]
-    """Package and name of the grammar of a line."""
-    number: ClassVar[re.Pattern[str]]
-    """What the grammar's terminal NUMBER looks like, without groups; with a look behind it need not
-    match the number of a code, which is then part of a name: `G54`."""
     signs: ClassVar[re.Pattern[bytes]]
     """What programs in this language have, and those of other controls have not."""
     writes: ClassVar[bool] = False
     """Whether programs in this language can be written as such again: see `spelled`."""
     speller: ClassVar[type[Speller] | None] = None
     """What writes programs for another control in this language; None: they are only read."""
+    keyed: ClassVar[Mapping[str, frozenset[str]]] = {}
+    """Names of all that lines may hang on which are learnt, for the translator ("") and for what
+    it has under a name: `key` tells them apart. Without any nothing is learnt; see `learned.py`."""
+    fixed: ClassVar[frozenset[str]] = frozenset()
+    """Names of what never changes."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
     def __init__(self, lines: list[str], file: str, dialect: type[Dialect], reading: Reading):
-        self.lines = lines
-        self.file = file
-        self.dialect = dialect
+        super().__init__(lines, file, dialect)
         self.reading = reading
-        self.line = self.at = self.visit = 0
+        self.at = self.visit = 0
         self.own = len(lines)
         """How many lines are those of the program; behind them are those of files that it calls."""
         self.annexed: Annexed | None = None
@@ -98,32 +75,24 @@ class Translator(ABC):
         """Those that were found to be executed `again` when the program was read before."""
         self.plainly = True
         """Whether plain lines are translated as such, and not by `blocks`."""
-        self._lark = _grammar(*self.grammar)
-        self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
-        self._shapes: dict[str, _Shape] = {}
-        self._partly: dict[tuple[str, ...], _Shape] = {}
-        self._fixed: dict[str, tuple[int, ...]] = {}
         self._items: tuple[Item, ...] = ()
+        self._learned = Learned(self) if self.keyed else None
 
     @abstractmethod
     def blocks(self, items: Sequence[Item]) -> Iterable[str]:
         """Return the blocks that the items of a line stand for. Raises InputError."""
 
-    def plain(self, items: Sequence[Item]) -> bool:
-        """Whether items are the words of one block, in order, whatever stands before them.
+    def key(self) -> Hashable | None:
+        """Return the state that `keyed` names; None where nothing can be learnt in it."""
+        return None
 
-        Asked once for each shape, so the answer must not depend on numbers. It spares such lines
-        the way through `blocks` while `plainly` is set: each item has a name, or one and a number.
-        """
-        return False
+    def take_key(self, key: Any) -> None:
+        """Take a state, but for where axes are."""
+        raise NotImplementedError
 
-    def routine(self, items: Sequence[Item], text: str) -> bool:
-        """Whether lines that differ from this one, `text`, only in numbers may come in runs.
-
-        Asked once for each shape, of a line without a comment.
-        """
-        del items, text
-        return False
+    def told(self) -> dict[str, Any]:
+        """Return where axes are, to be changed in its place; None for what is not known."""
+        return {}
 
     def several(self) -> list[str]:
         """Return the blocks of a run of lines from `line` on, one for each; nothing without one.
@@ -162,90 +131,6 @@ class Translator(ABC):
         """Return whether a line has words that count from where an axis stands."""
         del line
         return False
-
-    # --- lines ---
-
-    def items(self, line: int) -> tuple[Item, ...]:
-        """Return the items of a line. Raises InputError for what the grammar does not accept."""
-        shape, numbers = self._shape(line)
-        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
-        return tuple(part.item(bare) for part in shape.parts)
-
-    def _shape(self, line: int, text: str | None = None) -> tuple[_Shape, Sequence[str]]:
-        """Return the shape of a line, or of a text for it, and its numbers.
-
-        Those in a comment, or in a name, belong to the shape.
-        """
-        text = self.lines[line] if text is None else text
-        pieces = self._split(text)
-        found, key = pieces[1::2], SLOT.join(pieces[::2])
-        shape = self._shapes.get(key)
-        if shape is not None:
-            return shape, found
-        fixed = self._fixed.get(key)
-        if fixed is not None:
-            shape = self._partly.get((key, *[found[k] for k in fixed]))
-            if shape is not None:
-                return shape, [number for k, number in enumerate(found) if k not in fixed]
-        return self._new_shape(line, text, key, found)
-
-    def _new_shape(
-        self, line: int, text: str, key: str, found: list[str]
-    ) -> tuple[_Shape, Sequence[str]]:
-        """Return the shape of a line of which there was none, and its numbers."""
-        numbers, parts = self._parsed(line, text)
-        shape = self._shape_of(text, numbers, parts)
-        if numbers == found:
-            self._shapes[key] = shape
-            return shape, numbers
-        places = [at.span() for at in self.number.finditer(text)]
-        taken = {number.start_pos: str(number) for number in numbers}
-        own = [k for k, (at, _) in enumerate(places) if taken.get(at) == found[k]]
-        fixed = tuple(k for k in range(len(found)) if k not in own)
-        if len(own) < len(numbers) or self._fixed.setdefault(key, fixed) != fixed:
-            return shape, numbers
-        if len(self._partly) >= LATELY:
-            self._partly.clear()
-        self._partly[key, *[found[k] for k in fixed]] = shape
-        return shape, numbers
-
-    def _shape_of(self, text: str, numbers: Sequence[str], parts: tuple[Part, ...]) -> _Shape:
-        said = [part for part in parts if part.kind == COMMENT]
-        comments = "".join(_comment(text[slice(*part.place)]) for part in said)
-        rest = [part for part in parts if part.kind != COMMENT]
-        slots = [slot for part in rest for slot in part.slots]
-        pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
-        if not rest or not pairs or slots != [*range(len(numbers))]:
-            routine = not said and self.routine([part.item(numbers) for part in rest], text)
-            return _Shape(parts, comments, "", routine)
-        template = ""
-        if self.plain([part.item(numbers) for part in rest]):
-            words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]
-            template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
-        routine = not said and self.routine([part.item(numbers) for part in rest], text)
-        return _Shape(parts, comments, template, routine)
-
-    def items_in(self, text: str) -> tuple[Item, ...]:
-        """Return the items of a text that stands for the line. Raises InputError."""
-        shape, numbers = self._shape(self.line, text)
-        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
-        return tuple(part.item(bare) for part in shape.parts)
-
-    def grammar_named(self, package: str, name: str) -> TreeShapes:
-        """Return what parses by another grammar of the language, as `grammar` names one."""
-        return TreeShapes(_grammar(package, name))
-
-    def _parsed(self, line: int, text: str | None = None) -> tuple[list[Token], tuple[Part, ...]]:
-        """Return the numbers of a line, and its parts; or of another text for it."""
-        text = self.lines[line] if text is None else text
-        try:
-            tree = parsed(self._lark, text)
-        except UnexpectedInput as error:
-            column, message = refusal_of(error, text)
-            what = f"this is not a program for {self.dialect.name}: {message}"
-            raise self._error(line, "GX101", what, (column - 1, column), "") from None
-        numbers: list[Token] = []
-        return numbers, tuple(part_of(child, numbers) for child in tree.children)
 
     # --- files ---
 
@@ -286,7 +171,7 @@ class Translator(ABC):
             if left < 0:
                 message = f"the program is not over after {most} lines"
                 raise self.refusal("GX224", message, hint=f"does it end? {how_to_raise('steps')}")
-            shape, numbers = self._shape(self.line)
+            shape, numbers = self.shape(self.line)
             if shape.template and self.plainly:
                 yield self.line, shape.template % (*numbers,)
                 continue
@@ -297,27 +182,62 @@ class Translator(ABC):
                 self.visit += 1
             if run:
                 left -= len(run)
-                shape, numbers = self._shape(self.line)
-            for block in self._translated(shape, numbers):
+                shape, numbers = self.shape(self.line)
+            for block in self._learnt(shape, numbers):
                 yield self.line, block
+        if self._learned is not None:
+            self._learned.leave()
         self.line = max(self.own - 1, 0)
         self.visit += 1
         for block in self.closing():
             yield self.line, block
 
-    def _translated(self, shape: _Shape, numbers: Sequence[str]) -> Iterator[str]:
+    def _learnt(self, shape: Shape, numbers: Sequence[str]) -> Iterable[str]:
+        """Return the blocks of a line, as they were learnt where there is something."""
+        learned = self._learned
+        if learned is None:
+            return self._translated(shape, numbers)
+        if shape.slots is None:
+            learned.leave()
+            return self._translated(shape, numbers)
+        found = learned.blocks(shape, shape.slots, numbers)
+        if found is not None:
+            return _with_comments(found, shape.comments)
+        learned.leave()
+        rest = [part for part in shape.parts if part.kind != COMMENT]
+        tried = learned.tried(shape, shape.slots, rest, numbers)
+        items = self._items = shape.items(numbers)
+        blocks = [*self.blocks([item for item in items if item.kind != COMMENT])]
+        if tried is not None:
+            learned.confirm(tried, blocks, numbers)
+        return _with_comments(blocks, shape.comments)
+
+    def learnt_text(self, text: str, blocks: Callable[[Sequence[Item]], list[str]]) -> list[str]:
+        """Return the blocks of a text that stands for the line: learnt ones, or by `blocks`.
+
+        The text is one of plain words, of which `self.blocks` makes the same.
+        """
+        shape, numbers = self.shape(self.line, text)
+        learned, slots = self._learned, shape.slots
+        if learned is None or slots is None or shape.comments:
+            return blocks(shape.items(numbers))
+        found = learned.blocks(shape, slots, numbers)
+        learned.leave()
+        if found is not None:
+            return found
+        tried = learned.tried(shape, slots, shape.parts, numbers)
+        found = blocks(shape.items(numbers))
+        if tried is not None:
+            learned.confirm(tried, found, numbers)
+        return found
+
+    def _translated(self, shape: Shape, numbers: Sequence[str]) -> Iterator[str]:
         """Yield the blocks of a line, the first with its comments."""
-        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
-        items = self._items = tuple(part.item(bare) for part in shape.parts)
+        items = self._items = shape.items(numbers)
         rest = [item for item in items if item.kind not in (COMMENT, BLOCK_DELETE)]
         if self._skips(items):
             return
-        comments = shape.comments
-        for block in self.blocks(rest) if rest else ():
-            yield f"{block} {comments}".rstrip()
-            comments = ""
-        if comments:
-            yield comments
+        yield from _with_comments(self.blocks(rest) if rest else (), shape.comments)
 
     def _skips(self, items: Sequence[Item]) -> bool:
         """Whether the control skips the line. Raises InputError where nobody has said so."""
@@ -346,24 +266,11 @@ class Translator(ABC):
             same = [k for k, other in enumerate(self._items) if other is item]
             same += [k for k, other in enumerate(self.items(self.line)) if other == item]
             place = self._parsed(self.line)[1][same[0]].place if same else item.place
-        return self._error(self.line, code, message, place, hint)
+        return self.error_at(self.line, code, message, place, hint)
 
     def refuse(self, message: str, item: Item | None = None, hint: str = HINT) -> NoReturn:
         """Refuse an item as one that is not resolved. Raises InputError."""
         raise self.refusal("GX210", message, item, hint)
-
-    def _error(
-        self, line: int, code: str, message: str, place: tuple[int, int], hint: str
-    ) -> InputError:
-        start, end = place
-        where = Location(*self.place_of(line), start + 1, self.lines[line], max(1, end - start))
-        return InputError((Diagnostic(code, message, where, hint),))
-
-
-@cache
-def _grammar(package: str, name: str) -> Lark:
-    """Return a grammar, which is loaded once: that takes longer than a short program does."""
-    return kept.grammar(package, name)
 
 
 def translator_of(dialect: type[Dialect]) -> type[Translator]:
@@ -374,7 +281,9 @@ def translator_of(dialect: type[Dialect]) -> type[Translator]:
     return kind
 
 
-def _comment(text: str) -> str:
-    """Return a comment in round brackets."""
-    inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
-    return f"({inner.strip().translate(BRACKETS)})"
+def _with_comments(blocks: Iterable[str], comments: str) -> Iterable[str]:
+    """Return blocks, the first with the comments of the line; these alone where there is none."""
+    if not comments:
+        return blocks
+    first, *others = [*blocks] or [""]
+    return [f"{first} {comments}".strip(), *others]

@@ -9,6 +9,7 @@ BLOCKS = "plugins/gcxform_plugins/dialects/fagor/blocks.py"
 PLACES = "plugins/gcxform_plugins/dialects/fagor/places.py"
 TABLES = "plugins/gcxform_plugins/dialects/fagor/tables.py"
 TRANSLATION = "gcxform/flow/translation.py"
+SHAPES = "gcxform/flow/line_shapes.py"
 CASE = "tests/test_corpus.py::test_case[dialects/fagor/"
 READS = "tests/test_fagor.py::test_it_reads_what_another_reader_reads"
 WALK = "tests/test_translation.py"
@@ -288,7 +289,7 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: a shape holds for lines with numbers in comments",
-        TRANSLATION,
+        SHAPES,
         "        if numbers == found:",
         "        if numbers is not None:",
         WALK,
@@ -309,7 +310,7 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: a percent sign of a comment is a place for a number",
-        TRANSLATION,
+        SHAPES,
         'comments.replace("%", "%%")',
         "comments",
         WALK,

@@ -30,6 +30,10 @@ SPELLED = "gcxform/proof/spelled_out.py"
 WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
+LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
+LEARNED = "gcxform/flow/learned.py"
+LEARNT = "tests/properties/test_learned.py"
+
 MUTATIONS = (
     Mutation(
         "siemens written: a cycle without a length",
@@ -300,18 +304,46 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/plain-behind-turns]",
     ),
     Mutation(
-        "siemens: plain lines that were passed are not looked at",
-        BLOCKS,
-        "if self.line > self.last + 1:",
-        "if self.line > self.last + 9999:",
-        RANDOM,
+        "siemens: what is known of places is no part of a state",
+        LEARNING,
+        "        sets = known, ",
+        "        sets = frozenset(), ",
+        LEARNT,
     ),
     Mutation(
-        "siemens: words of passed lines are older than what was told before",
-        PLACE,
-        "if line > self.at.get(axis, (-1,))[0]:",
-        "if line < self.at.get(axis, (-1,))[0]:",
-        RANDOM,
+        "learned: a line may look at all there is",
+        LEARNED,
+        "            if looked[name] - keyed - self.translator.fixed:\n",
+        "            if False:\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: where axes are is not put into the translator",
+        LEARNED,
+        "            self.translator.told().update(self.ends)\n",
+        "            pass\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: a code is any number",
+        LEARNED,
+        "    return (shape, *[numbers[k] for k in codes]) if codes else shape\n",
+        "    return shape\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: a number of digits alone is any number",
+        LEARNED,
+        "        if step is None or not all([numbers[k].isdigit() for k in slots.digits]):\n",
+        "        if step is None:\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: the state behind a line is that of before",
+        LEARNED,
+        "        self.node = step.behind\n",
+        "        self.node = node\n",
+        LEARNT,
     ),
     Mutation(
         "siemens: IC is absolute in G90",
@@ -627,13 +659,6 @@ MUTATIONS = (
         "made.inside(old.point(point))",
         "point",
         f"{CASES}[dialects/siemens/frame-stands]",
-    ),
-    Mutation(
-        "siemens: plain lines know no frame",
-        BLOCKS,
-        "if self.feed_open or self.length_is_elsewhere or self.frame != Frame():",
-        "if self.feed_open or self.length_is_elsewhere:",
-        f"{CASES}[dialects/siemens/frame]",
     ),
     Mutation(
         "siemens: holes on a circle stand one step on",

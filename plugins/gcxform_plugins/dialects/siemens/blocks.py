@@ -13,7 +13,6 @@ from decimal import Decimal
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
-from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import rest_of
@@ -45,7 +44,6 @@ class Blocks(Contours):
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line, the first with its number. Raises InputError."""
         line = Line()
-        self._arrive()
         for item in items:
             self.read.get(item.kind, self.unread)(line, item)
         self._check_feed(line)
@@ -56,7 +54,6 @@ class Blocks(Contours):
         except PlaceError as error:
             at = line.alone or self.any_of(line)
             raise self.refusal(error.code, error.message, at, error.hint) from None
-        self.plainly = self._takes_plain_lines()
         if made and line.number:
             made[0] = line.number + made[0]
         return made
@@ -68,28 +65,6 @@ class Blocks(Contours):
         if self.feed_open and cuts and (line.axes or line.centres or line.named):
             message = "which feed is in force behind a cycle with its own is not known"
             self.refuse(message, self.any_of(line), FEED)
-
-    def _arrive(self) -> None:
-        """Note the plain lines before this one."""
-        if self.line > self.last + 1:
-            self.place.passed.append(range(self.last + 1, self.line))
-            self.along = None
-        self.last = self.place.line = self.line
-
-    def _takes_plain_lines(self) -> bool:
-        """Whether axis words alone are a block as they stand, from here on."""
-        if self.motion not in ("0", "1") or self.motion != self.said or self.drilling is not None:
-            return False
-        if self.steps or self.said_steps or self.place.unwound or not self.place.moved:
-            return False
-        if self.feed_open or self.length_is_elsewhere or self.frame != Frame():
-            return False
-        if self.has_corner or self.has_tangents:
-            return False
-        if (self.changed and self.edge is None) or (self.waiting is not None and not self.changed):
-            return False
-        cuts_tips = self.following and self.motion == "1"
-        return not cuts_tips or self.angles_change_in_proportion
 
     def _made(self, line: Line) -> Iterator[str]:
         if line.alone is not None and line.alone.name in FRAMES and not line.codes:

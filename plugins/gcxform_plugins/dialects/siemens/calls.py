@@ -39,7 +39,6 @@ class Calls(Computing):
             return []
         name = self._name_of(items)
         if name and (lines := self.called_file(name)) is not None:
-            self._arrive()
             self._enter(name, lines)
             return []
         return super().executed(items)
@@ -65,10 +64,11 @@ class Calls(Computing):
             self.refuse(f"{name} calls itself, or {LEVELS} calls are inside each other")
         if self.drilling is not None or self.comp:
             self.refuse(f"{name} is called under MCALL or compensation")
+        self.look_for_tangents(self.lines[lines.start : lines.stop])
         proc = self._proc_of(name, lines)
         times, given = self._given()
         level = self._bound(proc, given)
-        self.decides, self.plainly = True, False
+        self.decides = True
         self.calls.append(Call(lines, self.at, times))
         self.levels.append(level)
         self.at = lines.start

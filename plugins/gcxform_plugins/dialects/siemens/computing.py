@@ -46,9 +46,8 @@ class Computing(Deciding):
 
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line. Raises InputError."""
-        self._arrive()
         if not any(self._computes(item) for item in items):
-            return self._ended(items, [*super().blocks(items)])
+            return self._plainly(items)
         text = self.lines[self.line]
         try:
             tree = self.tree_of(text)
@@ -62,20 +61,11 @@ class Computing(Deciding):
             raise self.refusal("GX223", why.message) from None
         if not straight.strip():
             return []
-        plain = self.items_in(straight)
-        return self._ended(plain, [*super().blocks(plain)])
+        return self.learnt_text(straight, self._plainly)
 
-    def _arrive(self) -> None:
-        """Note the lines before this one; where lines are jumped over none is passed unseen."""
-        if self.decides:
-            self.last = self.place.line = self.line
-        else:
-            super()._arrive()
-
-    def _takes_plain_lines(self) -> bool:
-        """Whether axis words alone are a block as they stand; not where lines are passed over."""
-        known = not (self.decides or self.unsaid or self.unknown_cycle)
-        return known and (self.fed or self.motion == "0") and super()._takes_plain_lines()
+    def _plainly(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of a line that does not compute."""
+        return self._ended(items, [*super().blocks(items)])
 
     def _computes(self, item: gx.Item) -> bool:
         if item.kind == "indexed":
@@ -101,7 +91,7 @@ class Computing(Deciding):
             rule = rule_of(node)
             if rule in self.flow:
                 if rule not in ("def", "proc"):
-                    self.decides, self.plainly = True, False
+                    self.decides = True
                 self.flow[rule](node)
             if rule == "assignment":
                 edits += self._assignment(node, set_names)

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cached_property
+from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.arcs import CENTRES, START, decimals
@@ -46,6 +46,7 @@ class Corner:
 class Contours(Framing):
     """Cuts corners, and finds the arcs that go on where an element ends.
 
+    has_tangents  CT stands in lines that may be executed
     rounding  RNDM, the radius at every corner
     begins    where the axes stand behind a corner, and the line that goes on from it; `place` is
               the corner that was programmed
@@ -54,25 +55,24 @@ class Contours(Framing):
     """
 
     feed_mode = "94"
+    has_tangents = False
     rounding = ""
     begins: tuple[Point, int] | None = None
     along: Point | None = None
     arc: tuple[str, Sequence[str]] = "", ()
+
+    def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
+        super().__init__(lines, file, dialect, reading)
+        self.look_for_tangents(lines)
 
     def lose_pole(self) -> None:
         """Forget the pole and the direction: the plane, the unit or the zero may be another."""
         super().lose_pole()
         self.along = None
 
-    @property
-    def has_corner(self) -> bool:
-        """Whether the next line has to be looked at: it goes on from a corner, or has one."""
-        return self.begins is not None or bool(self.rounding)
-
-    @cached_property
-    def has_tangents(self) -> bool:
-        """Whether each line has to be looked at: CT hangs on the one before it."""
-        return any(TANGENT.search(line) for line in self.lines)
+    def look_for_tangents(self, lines: Iterable[str]) -> None:
+        """Note whether lines have CT, which hangs on the line before it."""
+        self.has_tangents = self.has_tangents or any(map(TANGENT.search, lines))
 
     def take_corner(self, line: Line) -> None:
         """Take what a line says of corners. Raises InputError where it leads to none."""
@@ -86,10 +86,10 @@ class Contours(Framing):
 
     def _moving(self, line: Line) -> str:
         corner = self._corner(line) if self._cuts(line) else None
-        start = self._seen()
+        start = self._seen() if self.has_tangents else None
         if corner is None:
             block = self._going_on(line)
-            self.along = self._direction(line, start)
+            self.along = self._direction(line, start) if self.has_tangents else None
             return block
         item = self.any_of(line)
         self.begins = None
@@ -234,7 +234,8 @@ class Contours(Framing):
 
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
         made = self._tangential(line) if self.motion == "CT" else super()._arc(line)
-        self.arc = made[0], made[2]
+        if self.has_tangents:
+            self.arc = made[0], made[2]
         return made
 
     def _tangential(self, line: Line) -> tuple[str, dict[str, float], list[str]]:

@@ -42,7 +42,7 @@ class Framing(Polar):
             made = self.frame @ made
         old = self.frame
         self.place.seen_anew(lambda point: made.inside(old.point(point)))
-        self.frame, self.plainly = made, False
+        self.frame = made
         self.lose_pole()
         yield from ()
 

@@ -206,18 +206,19 @@ class Moves(Statements):
 
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
         """Return the code of an arc, computed ends, and its other words. Raises PlaceError."""
-        ends, place, plane = self._ends(line), self.place, self.plane
+        place, plane = self.place, self.plane
         if self.motion == "CIP":
-            return self._through(line, ends)
+            return self._through(line, self._ends(line))
         if line.middles:
             self.refuse("I1, J1 and K1 belong to CIP", self.first_of(line))
         if not line.centres and not line.named.keys() & {"CR", "AR"}:
             message = "an arc without I, J, K, CR= or AR="
             raise self.refusal("GX210", message, self.any_of(line), "write its centre or radius")
-        words = [arcs.turns(line, place, plane, ends)] if "TURN" in line.named else []
+        words = [arcs.turns(line, place, plane, self._ends(line))] if "TURN" in line.named else []
         if "AR" in line.named:
             self._alone_in(line, "AR")
-            made = arcs.opened(line, place, plane, 1 if self.motion == "3" else -1, ends)
+            sense = 1 if self.motion == "3" else -1
+            made = arcs.opened(line, place, plane, sense, self._ends(line))
             centres = {k: v for k, v in made.items() if k in "IJK"}
             computed = {k: v for k, v in made.items() if k not in "IJK"}
             return self.motion, computed, [*self._centred(False), *arcs.decimals(centres), *words]

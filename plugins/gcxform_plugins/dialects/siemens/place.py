@@ -30,48 +30,30 @@ def text_of(value: Decimal) -> str:
     return "0" if text in ("-0", "") else text
 
 
-Words = Callable[[int], Iterable[tuple[str, str]]]
-
-
 class Place:
     """Positions of axes in the words of the program, by letter; None is one that is not known.
 
-    Plain lines are not looked at one by one: they are `passed`, and their `words`, all of them
-    absolute, are taken when a position is asked for. So each position has the line that told it.
-
-    shifted   axes whose zero or tool length has changed, with the line that did
+    shifted   axes whose zero or tool length has changed
     named     axes that the program has named
     unwound   rotary axes that stand whole turns beside the number that the control has
     """
 
-    def __init__(self, start: Mapping[str, float], words: Words) -> None:
-        self.at: dict[str, tuple[int, str | Decimal | None]] = {
-            axis: (-1, Decimal(repr(float(value)))) for axis, value in start.items()
+    def __init__(self, start: Mapping[str, float]) -> None:
+        self.at: dict[str, str | Decimal | None] = {
+            axis: Decimal(repr(float(value))) for axis, value in start.items()
         }
-        self.shifted: dict[str, int] = {}
+        self.shifted: set[str] = set()
         self.unwound: set[str] = set()
         self.named: set[str] = set(start)
         self.moved = False
-        self.line = 0
-        self.passed: list[range] = []
-        self.words = words
 
-    def catch_up(self) -> None:
-        """Take the words of the lines that were passed."""
-        for line in (line for lines in self.passed for line in lines):
-            for axis, number in self.words(line):
-                self.named.add(axis)
-                if line > self.at.get(axis, (-1,))[0]:
-                    self.at[axis] = line, number
-                if line > self.shifted.get(axis, line):
-                    del self.shifted[axis]
-        self.passed = []
+    def stands(self, axis: str) -> bool:
+        """Whether it is known where an axis stands."""
+        return self.at.get(axis) is not None
 
     def known(self, axis: str) -> Decimal | None:
         """Return where an axis stands; None where that is not known."""
-        if self.passed:
-            self.catch_up()
-        value = self.at.get(axis, (0, None))[1]
+        value = self.at.get(axis)
         return None if value is None else Decimal(value)
 
     def unturned(self) -> bool:
@@ -79,7 +61,6 @@ class Place:
 
         Then X, Y and Z are the same numbers with TRAORI and without it.
         """
-        self.catch_up()
         angles = [self.known(axis) for axis in self.named & set(ROTARY)]
         return bool(angles) and all(angle == 0 for angle in angles)
 
@@ -91,9 +72,9 @@ class Place:
     def lose(self, axes: Iterable[str], shifted: bool = True) -> None:
         """Forget where axes stand; those that are unwound stay so."""
         for axis in axes:
-            self.at[axis] = self.line, None
+            self.at[axis] = None
             if shifted:
-                self.shifted[axis] = self.line
+                self.shifted.add(axis)
 
     def seen_anew(self, moved: Callable[[Sequence[Decimal]], Sequence[Decimal]]) -> None:
         """Take another frame: nothing moves, and X, Y, Z are elsewhere in it, if that is known."""
@@ -101,7 +82,8 @@ class Place:
         there = [value for value in known if value is not None]
         found = [*moved(there)] if len(there) == len(known) else [None] * len(known)
         for axis, value in zip(LINEAR, found, strict=True):
-            self.at[axis], self.shifted[axis] = (self.line, value), self.line
+            self.at[axis] = value
+            self.shifted.add(axis)
 
     def absolute(self, axis: str, number: str) -> None:
         """Take an absolute word. Raises PlaceError."""
@@ -111,10 +93,10 @@ class Place:
                 "GX210", message, f"write {axis}=DC(...), the shortest way, for all of its words"
             )
         self._stand(axis, number)
-        self.shifted.pop(axis, None)
+        self.shifted.discard(axis)
 
     def _stand(self, axis: str, value: str | Decimal) -> None:
-        self.at[axis] = self.line, value
+        self.at[axis] = value
         self.named.add(axis)
 
     def step(self, axis: str, number: str) -> None:
@@ -158,7 +140,7 @@ class Place:
         end = wanted if before is None else before + _way(axis, way, before, wanted)
         self._stand(axis, end)
         (self.unwound.add if end != wanted else self.unwound.discard)(axis)
-        self.shifted.pop(axis, None)
+        self.shifted.discard(axis)
         return text_of(end)
 
 

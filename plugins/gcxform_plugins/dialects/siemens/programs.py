@@ -17,8 +17,8 @@ from lark.exceptions import UnexpectedInput
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.shared.keeping import KEPT
-from gcxform_plugins.dialects.siemens.calls import Calls
 from gcxform_plugins.dialects.siemens.effects import effect_of
+from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.lines import Lines
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
@@ -67,11 +67,11 @@ FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres"),
     *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
-    *("fed", "feed_mode", "pole", "polar", "feed_open"),
+    *("fed", "feed_mode", "pole", "polar", "feed_open", "orientation"),
 )
 
 
-class Programs(Calls):
+class Programs(Learning):
     """Executes the lines of a program for a SINUMERIK."""
 
     writes = True
@@ -82,25 +82,21 @@ class Programs(Calls):
         """Return the blocks of a line. Raises InputError."""
         if not self.reading.stays:
             return self.executed(items)
-        self._arrive()
         if self.line < self.kept_until:
             return self._perhaps(items) if self.perhaps else self._kept(items, self.kept_why, True)
         self.kept_until, self.perhaps = 0, False
-        words = self._words_in(items)
-        before = {name: getattr(self, name) for name in STATE}
-        orientation = [*self.orientation]
+        before = {**vars(self)}
         try:
-            if self.unknown_cycle and any(i.name in LINEAR for i in words if i.names):
+            if self.unknown_cycle and self._names_axes(items, LINEAR):
                 self.refuse(f"{self.unknown_cycle} is called behind this block")
-            if self.line in self.stay and any(i.names and i.name in ALL for i in words):
+            if self.line in self.stay and self._names_axes(items, ALL):
                 self.refuse("only the control knows how often this is executed")
             return [*self.executed(items)]
         except gx.InputError as error:
             (found, *_) = error.diagnostics
             if found.code not in KEEPABLE:
                 raise
-            vars(self).update(before)
-            self.orientation = orientation
+            vars(self).update({n: before.get(n, getattr(type(self), n, None)) for n in STATE})
             if any(i.kind == "flow" and DECIDES.match(i.name) for i in items):
                 self._decides_elsewhere()
             return self._perhaps(items, found.message)
@@ -124,6 +120,9 @@ class Programs(Calls):
         if any(item.kind in ("named", "expression", "array") for item in items):
             self.assumed[UNDEFINED] = None
         return []
+
+    def _names_axes(self, items: Sequence[gx.Item], axes: str) -> bool:
+        return any(item.names and item.name in axes for item in self._words_in(items))
 
     def _words_in(self, items: Sequence[gx.Item], line: int = -1) -> Sequence[gx.Item]:
         """Return all items of a line, of one that computes too; as they are where it is not read.
@@ -154,7 +153,7 @@ class Programs(Calls):
             self.lose_axes(ALL + "F" if effect is None else effect.replace("T", ""))
             self.place.moved = True
             if effect is None:
-                self.motion, self.unsaid, self.plainly, self.work = "", {"distance"}, False, ""
+                self.motion, self.unsaid, self.work = "", {"distance"}, ""
                 self.lose_called(text)
             if effect is None or "T" in effect:
                 self.tool = self.waiting = self.edge = None
@@ -190,7 +189,6 @@ class Programs(Calls):
             self.motion = ""
         if opaque or (self.perhaps and "distance" in line.groups):
             self.unsaid = {"distance"}
-        self.plainly = False
         return [f"{line.number}{' '.join([*codes, f'{KEPT} P{number}'])}"]
 
     def _is_read(self, text: str, items: Sequence[gx.Item]) -> bool:
@@ -373,7 +371,7 @@ class Programs(Calls):
         self.lose_axes(LINEAR if line.changes is None else LINEAR + ROTARY)
 
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
-        if self.reading.stays and any(self.place.known(axis) is None for axis in self.plane):
+        if self.reading.stays and not all(map(self.place.stands, self.plane)):
             self.refuse("an arc, and where it starts is not known", self.any_of(line))
         return super()._arc(line)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -75,14 +75,12 @@ class Statements(gx.Translator):
         self, lines: list[str], file: str, dialect: type[gx.Dialect], reading: Any
     ) -> None:
         super().__init__(lines, file, dialect, reading)
-        self.place = Place(self.reading.start, self._words_of)
-        self.last = -1
-        self.plainly = False
+        self.place = Place(self.reading.start)
         self.motion, self.said, self.plane, self.work, self.unit = "", "", "XY", "", ""
         self.steps = self.said_steps = self.said_centres = False
         self.frame = Frame()
         self.following = self.comp = self.changed = False
-        self.orientation = ["", ""]
+        self.orientation = "", ""
         self.tool: str | None = None
         self.waiting: str | None = None
         self.edge: str | None = None
@@ -101,18 +99,6 @@ class Statements(gx.Translator):
             "header": self._header,
             "main_number": self._number,
         }
-
-    def _words_of(self, line: int) -> Iterator[tuple[str, str]]:
-        """Yield axis words of a line that was passed; others that were passed are skipped ones."""
-        items = [item for item in self.items(line) if item.kind != "comment"]
-        if all(item.kind == "word" for item in items):
-            yield from ((i.name, i.numbers[0]) for i in items if i.name in AXES)
-
-    def plain(self, items: Sequence[gx.Item]) -> bool:
-        """Whether a line has axis words alone, each once, and perhaps a number and a feed."""
-        names = [item.name for item in items]
-        words = all(item.kind == "word" for item in items) and len(set(names)) == len(names)
-        return words and {*names} <= {*AXES, "N", "F"} and not {*names} <= {"N", "F"}
 
     def _nothing(self, line: Line, item: gx.Item) -> None:
         """Take labels: jumps are refused."""
@@ -324,7 +310,9 @@ class Statements(gx.Translator):
         if name in QUIET:
             return
         if name in ORIENTATION:
-            self.orientation[ORIENTATION[name]] = name
+            said = [*self.orientation]
+            said[ORIENTATION[name]] = name
+            self.orientation = said[0], said[1]
         elif name in FRAMES:
             line.alone = item
         elif name == "SUPA":

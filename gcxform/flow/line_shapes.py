@@ -1,0 +1,206 @@
+"""Lines of a language of its own, taken apart into items: lark parses one line of each shape.
+
+Two lines that differ only in their numbers have the same items. A number in a comment, or in a
+name, belongs to the shape.
+"""
+
+from __future__ import annotations
+
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from functools import cache
+from typing import ClassVar
+
+from lark import Lark, Token
+from lark.exceptions import UnexpectedInput
+
+from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.dialect.dialect import Dialect
+from gcxform.flow.items import Item, Part, part_of
+from gcxform.flow.learned import CODE, DIGITS, Slots
+from gcxform.flow.tree_shapes import SLOT, TreeShapes
+from gcxform.syntax import grammar_cache as kept
+from gcxform.syntax.grammar import parsed, refusal_of
+from gcxform.values import dataclass
+
+COMMENT = "comment"
+LATELY = 4096  # shapes with numbers in names and comments that are kept
+BRACKETS = str.maketrans("()", "[]")
+
+
+@dataclass(eq=False, slots=True)
+class Shape:
+    """The parts of all lines that differ only in their numbers, and their comments.
+
+    `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
+    `slots` says what can be learnt of such lines; None if nothing.
+    """
+
+    parts: tuple[Part, ...]
+    comments: str
+    template: str
+    routine: bool = False
+    slots: Slots | None = None
+
+    def items(self, numbers: Sequence[str]) -> tuple[Item, ...]:
+        """Return the items of a line with these numbers."""
+        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
+        return tuple([part.item(bare) for part in self.parts])
+
+
+class LineShapes(ABC):
+    """The lines of a program, and the shapes that they have had."""
+
+    grammar: ClassVar[tuple[str, str]]
+    """Package and name of the grammar of a line."""
+    number: ClassVar[re.Pattern[str]]
+    """What the grammar's terminal NUMBER looks like, without groups; with a look behind it need not
+    match the number of a code, which is then part of a name: `G54`."""
+
+    def __init__(self, lines: list[str], file: str, dialect: type[Dialect]) -> None:
+        self.lines = lines
+        self.file = file
+        self.dialect = dialect
+        self.line = 0
+        self._lark = _grammar(*self.grammar)
+        self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
+        self._shapes: dict[str, Shape] = {}
+        self._partly: dict[tuple[str, ...], Shape] = {}
+        self._fixed: dict[str, tuple[int, ...]] = {}
+
+    @abstractmethod
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return the file in which a line stands, and which of its lines that is, from 1."""
+
+    def plain(self, items: Sequence[Item]) -> bool:
+        """Whether items are the words of one block, in order, whatever stands before them.
+
+        Asked once for each shape, so the answer must not depend on numbers. It spares such lines
+        the way through `blocks` while `plainly` is set: each item has a name, or one and a number.
+        """
+        return False
+
+    def routine(self, items: Sequence[Item], text: str) -> bool:
+        """Whether lines that differ from this one, `text`, only in numbers may come in runs.
+
+        Asked once for each shape, of a line without a comment.
+        """
+        del items, text
+        return False
+
+    def role(self, part: Part) -> str:
+        """Return what numbers of an item may be in lines that are learnt; nothing if none are.
+
+        "any", "digits" alone, or "code", of which each is another line.
+        """
+        del part
+        return ""
+
+    def items(self, line: int) -> tuple[Item, ...]:
+        """Return the items of a line. Raises InputError for what the grammar does not accept."""
+        shape, numbers = self.shape(line)
+        return shape.items(numbers)
+
+    def shape(self, line: int, text: str | None = None) -> tuple[Shape, Sequence[str]]:
+        """Return the shape of a line, or of a text for it, and its numbers.
+
+        Those in a comment, or in a name, belong to the shape.
+        """
+        text = self.lines[line] if text is None else text
+        pieces = self._split(text)
+        found, key = pieces[1::2], SLOT.join(pieces[::2])
+        shape = self._shapes.get(key)
+        if shape is not None:
+            return shape, found
+        fixed = self._fixed.get(key)
+        if fixed is not None:
+            shape = self._partly.get((key, *[found[k] for k in fixed]))
+            if shape is not None:
+                return shape, [number for k, number in enumerate(found) if k not in fixed]
+        return self._new_shape(line, text, key, found)
+
+    def _new_shape(
+        self, line: int, text: str, key: str, found: list[str]
+    ) -> tuple[Shape, Sequence[str]]:
+        """Return the shape of a line of which there was none, and its numbers."""
+        numbers, parts = self._parsed(line, text)
+        shape = self._shape_of(text, numbers, parts)
+        if numbers == found:
+            self._shapes[key] = shape
+            return shape, numbers
+        places = [at.span() for at in self.number.finditer(text)]
+        taken = {number.start_pos: str(number) for number in numbers}
+        own = [k for k, (at, _) in enumerate(places) if taken.get(at) == found[k]]
+        fixed = tuple(k for k in range(len(found)) if k not in own)
+        if len(own) < len(numbers) or self._fixed.setdefault(key, fixed) != fixed:
+            return shape, numbers
+        if len(self._partly) >= LATELY:
+            self._partly.clear()
+        self._partly[key, *[found[k] for k in fixed]] = shape
+        return shape, numbers
+
+    def _shape_of(self, text: str, numbers: Sequence[str], parts: tuple[Part, ...]) -> Shape:
+        said = [part for part in parts if part.kind == COMMENT]
+        comments = "".join(_comment(text[slice(*part.place)]) for part in said)
+        rest = [part for part in parts if part.kind != COMMENT]
+        slots = [slot for part in rest for slot in part.slots]
+        pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
+        if not rest or not pairs or slots != [*range(len(numbers))]:
+            routine = not said and self.routine([part.item(numbers) for part in rest], text)
+            return Shape(parts, comments, "", routine)
+        template = ""
+        if self.plain([part.item(numbers) for part in rest]):
+            words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]
+            template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
+        routine = not said and self.routine([part.item(numbers) for part in rest], text)
+        return Shape(parts, comments, template, routine, self._slots(rest))
+
+    def _slots(self, parts: Sequence[Part]) -> Slots | None:
+        """Return what can be learnt of lines with these parts."""
+        roles = [(part, self.role(part)) for part in parts]
+        if not all(role for _, role in roles):
+            return None
+        of = {name: [k for p, r in roles if r == name for k in p.slots] for name in (CODE, DIGITS)}
+        return Slots(tuple(of[CODE]), tuple(of[DIGITS]))
+
+    def items_in(self, text: str) -> tuple[Item, ...]:
+        """Return the items of a text that stands for the line. Raises InputError."""
+        shape, numbers = self.shape(self.line, text)
+        return shape.items(numbers)
+
+    def grammar_named(self, package: str, name: str) -> TreeShapes:
+        """Return what parses by another grammar of the language, as `grammar` names one."""
+        return TreeShapes(_grammar(package, name))
+
+    def _parsed(self, line: int, text: str | None = None) -> tuple[list[Token], tuple[Part, ...]]:
+        """Return the numbers of a line, and its parts; or of another text for it."""
+        text = self.lines[line] if text is None else text
+        try:
+            tree = parsed(self._lark, text)
+        except UnexpectedInput as error:
+            column, message = refusal_of(error, text)
+            what = f"this is not a program for {self.dialect.name}: {message}"
+            raise self.error_at(line, "GX101", what, (column - 1, column), "") from None
+        numbers: list[Token] = []
+        return numbers, tuple(part_of(child, numbers) for child in tree.children)
+
+    def error_at(
+        self, line: int, code: str, message: str, place: tuple[int, int], hint: str
+    ) -> InputError:
+        """Return the error about a part of a line, as it was read."""
+        start, end = place
+        where = Location(*self.place_of(line), start + 1, self.lines[line], max(1, end - start))
+        return InputError((Diagnostic(code, message, where, hint),))
+
+
+@cache
+def _grammar(package: str, name: str) -> Lark:
+    """Return a grammar, which is loaded once: that takes longer than a short program does."""
+    return kept.grammar(package, name)
+
+
+def _comment(text: str) -> str:
+    """Return a comment in round brackets."""
+    inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
+    return f"({inner.strip().translate(BRACKETS)})"

@@ -1,0 +1,70 @@
+"""What a line of plain words hangs on, so that its like need not be translated one by one.
+
+`key` is that, but for where axes stand, which is carried along as text. Where a frame, a cycle or a
+decision is in force nothing is learnt. To leave something out here is no danger: of a line that
+looks at anything else nothing is learnt (`gcxform/flow/learned.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from operator import attrgetter
+from typing import Any, ClassVar
+
+from gcxform_plugins.dialects.siemens.calls import Calls
+from gcxform_plugins.dialects.siemens.frames import Frame
+
+ROLES = {
+    **dict.fromkeys((*"XYZABCIJKF", "CR"), "any"),
+    **dict.fromkeys("GMS", "code"),
+    "N": "digits",
+}
+KINDS = frozenset(("word", "value", "named"))
+MODES = (
+    *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres", "comp"),
+    *("changed", "tool", "waiting", "edge", "fed", "feed_mode", "feed_open", "orientation"),
+    *("following", "stopped", "decides", "perhaps"),
+)
+WITHOUT = (
+    *("stay", "drilling", "once", "unknown_cycle", "unsaid", "loses", "holes"),
+    *("begins", "rounding", "has_tangents"),
+)
+"""What is not, where anything is learnt."""
+OTHERS = ("line", "kept_until", "frame", "levels", "calls", "place")
+PLAIN = Frame()
+modes_of, without = attrgetter(*MODES), attrgetter(*WITHOUT)
+
+
+class Learning(Calls):
+    """Says what a line hangs on."""
+
+    keyed: ClassVar[Mapping[str, frozenset[str]]] = {
+        "": frozenset((*MODES, *WITHOUT, *OTHERS)),
+        "place": frozenset(("at", "shifted", "unwound", "named", "moved")),
+    }
+    fixed: ClassVar[frozenset[str]] = frozenset(("dialect", "reading", "read"))
+
+    def role(self, part: Any) -> str:
+        """Return what numbers of an item may be: of G, M and S each is another line."""
+        return ROLES.get(part.names[0], "") if part.kind in KINDS and len(part.slots) == 1 else ""
+
+    def key(self) -> Hashable | None:
+        """Return the state; None where nothing is learnt in it."""
+        if self.line < self.kept_until or any(without(self)) or self.frame != PLAIN:
+            return None
+        place = self.place
+        known = frozenset([axis for axis, value in place.at.items() if value is not None])
+        sets = known, frozenset(place.shifted), frozenset(place.unwound), frozenset(place.named)
+        return modes_of(self), frozenset(self.levels[-1]), bool(self.calls), sets, place.moved
+
+    def take_key(self, key: Any) -> None:
+        """Take a state, but for where axes are."""
+        modes, _, _, (_, shifted, unwound, named), moved = key
+        vars(self).update(zip(MODES, modes, strict=True))
+        place = self.place
+        place.shifted, place.unwound, place.named = {*shifted}, {*unwound}, {*named}
+        place.moved = moved
+
+    def told(self) -> dict[str, Any]:
+        """Return where axes are."""
+        return self.place.at

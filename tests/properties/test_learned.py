@@ -1,0 +1,139 @@
+"""Lines that are learnt become what they become one by one, in every language that learns."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+
+import pytest
+from seeds_kit import LONG, shares
+
+import gcxform as gx
+from gcxform.flow import translation
+from gcxform.flow.translated import Translated, translated_so_far
+from gcxform.machine.machine import Tool
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+
+TOOLS = {n: Tool(length=10.0 * n, radius=1.0) for n in range(1, 4)}
+READINGS = [
+    Reading(stays=stays, units="mm", tools=TOOLS, start=start)
+    for stays in (False, True)
+    for start in ({}, {"X": 0.0, "Y": 0.0, "Z": 5.0, "A": 0.0})
+]
+SIEMENS = (
+    *("G{m} X{a} Y{b}", "G1 X{a} Y{b} Z=R1", "X{a} Y{b} Z{c}", "X={a} Y={b}", "N{n} X{a}"),
+    *("N{n} G1 X{a} Y{b} F{f}", "G3 X={a} Y={b} CR={r}", "G2 X{a} Y{b} I{c} J{r}", "CR={r} X{a}"),
+    *("G2 X{a} Y{b} AR={f}", "G{d}", "G{d} X{a}", "X=IC({a})", "X=AC({a}) Y{b}", "A=DC({f})"),
+    *("A{f} X{a}", "R1={c}", "R{k}=R1+{a}", "X=R1+{a} Y{b}", "X=R1 Y=R{k} F{f}", "TRANS X{a}"),
+    *("ATRANS Y{b}", "ROT RPL={f}", "TRANS", "T{k}", "M6", "T{k} M6", "D1", "D0", "M{k}", "S{f}"),
+    *("S{f} M3", "G54", "G55", "G500", "G17", "G18", "G64", "G4 F{r}", "G41 X{a}", "G40", "F{f}"),
+    *("; note {n}", "X{a} ; to {n}", 'MSG("{n}")', "STOPRE", "MCALL CYCLE81(5,0,2,-{r})", "MCALL"),
+    *("G94", "G95", "G93", "G710", "G700", "AP={f} RP={r}", "G111 X{a} Y{b}", "G110 X{a}", "SOFT"),
+    *("SUPA G0 Z{a} D0", "X{a} X{b}", "G1 G2", "Q{a}", "IF R1>{a} GOTOF E{k}", "$AC_X={a}", "RET"),
+    *("X{a}M8", "n{n} g1 x{a}", "TRAORI", "TRAFOOF", "X=R9", "R9=$A_IN[1]", "CYCLE800({a})", "G60"),
+)
+LOOPS = (("FOR R{k}=1 TO {k}", "ENDFOR"), ("WHILE R1<{k}", "ENDWHILE"), ("IF R1>={a}", "ENDIF"))
+HEAD = ("G90 G17 G710 G94 F100", "R1=1 R2=2 R3=0", "G0 X0 Y0 Z5")
+
+
+def number(pick: random.Random) -> str:
+    return f"{pick.uniform(-30, 30):.{pick.randint(0, 4)}f}".replace(
+        "-0.", pick.choice(("-0.", "-."))
+    )
+
+
+def filled(line: str, pick: random.Random) -> str:
+    return line.format(
+        **{each: number(pick) for each in "abc"},
+        r=round(pick.uniform(0, 40), 2),
+        f=pick.randint(1, 400),
+        n=pick.choice((pick.randint(1, 9999), number(pick).lstrip("-"))),
+        k=pick.randint(1, 3),
+        m=pick.choice(("0", "1", "01", "1", "2")),
+        d=pick.choice((90, 91)),
+    )
+
+
+def siemens(seed: int) -> str:
+    """Return a program of a few lines over and over, with other numbers."""
+    pick = random.Random(seed)
+    few = [*pick.sample(SIEMENS, pick.randint(2, 9)), *SIEMENS[:4]]
+    lines = [*HEAD][seed % 4 == 3 :]
+    for _ in range(pick.randint(5, 50)):
+        if pick.random() < 0.05:
+            first, last = pick.choice(LOOPS)
+            inner = [filled(pick.choice(few), pick) for _ in range(pick.randint(1, 4))]
+            step = ["R1=R1+1"] if "WHILE" in first else []
+            lines += [filled(first, pick), *inner, *step, last]
+        rare = pick.random() < 0.04
+        lines.append(filled(pick.choice(SIEMENS if rare else few), pick))
+    return "\n".join([*lines, "M30", ""])
+
+
+def found(text: str, name: str, reading: Reading) -> Sequence[object]:
+    """Return all that a translation says."""
+    dialect = default_registry().dialect(name)
+    made: Translated
+    made, refused = translated_so_far(
+        Source.of_bytes(text.encode("latin-1"), "a"), dialect, reading
+    )
+    undecided = made.undecided.lost if made.undecided else {}
+    said = [str(each) for each in refused.diagnostics] if refused else []
+    origin, visits = made.origin.tolist(), made.visits.tolist()
+    return (
+        made.text.decode("latin-1").splitlines(),
+        origin,
+        visits,
+        undecided,
+        said,
+        [*made.assumed],
+    )
+
+
+@shares(100_000 if LONG else 100, 100)
+def test_programs_are_translated_alike(seeds: range) -> None:
+    learnt = 0
+    for seed in seeds:
+        text, reading = siemens(seed), READINGS[seed % len(READINGS)]
+        fast = found(text, "siemens", reading)
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(translation, "Learned", lambda _: None)
+            assert found(text, "siemens", reading) == fast, text
+        learnt += len(fast[0])
+    assert learnt > 5 * len(seeds)
+
+
+@pytest.mark.parametrize(
+    ("lines", "block"),
+    [
+        (("X2 Y2", "X3 Y3", "X4 Y4", "X=IC(1) Y5"), "X5 Y5"),
+        (("G3 X=3 Y=1 CR=2", "G3 X=5 Y=1 CR=2", "T1 M6", "G3 X=7 Y=1 CR=2"), "G3 M9000 P"),
+    ],
+)
+def test_where_axes_are_is_known_behind_lines_that_were_learnt(
+    lines: tuple[str, ...], block: str
+) -> None:
+    text = "\n".join(["G90 G17 G1 F9 X1 Y1", *lines, "M30", ""])
+    blocks = found(text, "siemens", READINGS[2 if "CR" in text else 0])[0]
+    assert isinstance(blocks, list)
+    assert blocks[-2].startswith(block)
+
+
+class Hidden(default_registry().dialect("siemens").translator):  # type: ignore[misc]
+    """A translator that looks at what is not keyed."""
+
+    hidden = 0
+
+    def blocks(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return blocks with how many there were before."""
+        made = [f"{block} P{self.hidden}" for block in super().blocks(items)]
+        self.hidden = self.line
+        return made
+
+
+def test_nothing_is_learnt_by_what_is_not_keyed() -> None:
+    lines = ["G90 G1 F9 X1", "X2", "X3", "X4", ""]
+    translator = Hidden(lines, "a", default_registry().dialect("siemens"), Reading())
+    assert [block for _, block in translator.run()][-1] == "X4 P2"
