@@ -176,10 +176,10 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/tangential-by-a-radius]",
     ),
     Mutation(
-        "siemens: CT looks at lines that were passed",
+        "siemens: the direction of lines before CT is not looked at",
         CONTOURS,
-        "return any(TANGENT.search(line) for line in self.lines)",
-        "return False",
+        "        self.has_tangents = self.has_tangents or any(map(TANGENT.search, lines))\n",
+        "        pass\n",
         f"{CASES}[dialects/siemens/tangential-behind-plain-lines]",
     ),
     Mutation(
