@@ -158,8 +158,8 @@ class Learned:
     def leave(self) -> None:
         """Put into the translator what the lines have done."""
         if self.node is not None:
-            self.translator.take_key(self.node.key)
             self.translator.told().update(self.ends)
+            self.translator.take_key(self.node.key)
             self.node, self.ends = None, {}
 
     # --- learning ---

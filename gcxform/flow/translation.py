@@ -50,10 +50,11 @@ class Translator(LineShapes):
     speller: ClassVar[type[Speller] | None] = None
     """What writes programs for another control in this language; None: they are only read."""
     keyed: ClassVar[Mapping[str, frozenset[str]]] = {}
-    """Names of all that lines may hang on which are learnt, for the translator ("") and for what
-    it has under a name: `key` tells them apart. Without any nothing is learnt; see `learned.py`."""
+    """Names of what learnt lines may hang on and change, for the translator ("") and for what it
+    has under a name: `key` tells it, `take_key` takes it. Without any nothing is learnt; see
+    `learned.py`."""
     fixed: ClassVar[frozenset[str]] = frozenset()
-    """Names of what never changes."""
+    """Names of what they may hang on and do not change: `key` tells that, or it never changes."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
@@ -87,7 +88,7 @@ class Translator(LineShapes):
         return None
 
     def take_key(self, key: Any) -> None:
-        """Take a state, but for where axes are."""
+        """Take a state; of where axes are, which of them have been lost."""
         raise NotImplementedError
 
     def told(self) -> dict[str, Any]:

@@ -311,6 +311,13 @@ MUTATIONS = (
         LEARNT,
     ),
     Mutation(
+        "siemens: what learnt lines lose is known behind them",
+        LEARNING,
+        "        place.at.update(dict.fromkeys(place.at.keys() - known))\n",
+        "",
+        LEARNT,
+    ),
+    Mutation(
         "learned: a line may look at all there is",
         LEARNED,
         "            if looked[name] - keyed - self.translator.fixed:\n",

@@ -110,6 +110,7 @@ def test_programs_are_translated_alike(seeds: range) -> None:
     ("lines", "block"),
     [
         (("X2 Y2", "X3 Y3", "X4 Y4", "X=IC(1) Y5"), "X5 Y5"),
+        (("G700", "X1 Y1", "G700", "X2 Y2", "G700", "X3", "G3 X7 CR=2"), "G3 M9000"),
         (("G3 X=3 Y=1 CR=2", "G1 X4", "G3 X=6 Y=1 CR=2", "G1 X=R9", "G3 X=7 Y=1 CR=2"), "G3 M9000"),
     ],
 )

@@ -27,10 +27,10 @@ MODES = (
 )
 WITHOUT = (
     *("stay", "drilling", "once", "unknown_cycle", "unsaid", "loses", "holes"),
-    *("begins", "rounding", "has_tangents"),
+    *("begins", "rounding", "has_tangents", "kept_until"),
 )
 """What is not, where anything is learnt."""
-OTHERS = ("line", "kept_until", "frame", "levels", "calls", "place")
+OTHERS = ("line", "frame", "levels", "calls", "place")
 PLAIN = Frame()
 modes_of, without = attrgetter(*MODES), attrgetter(*WITHOUT)
 
@@ -39,10 +39,10 @@ class Learning(Calls):
     """Says what a line hangs on."""
 
     keyed: ClassVar[Mapping[str, frozenset[str]]] = {
-        "": frozenset((*MODES, *WITHOUT, *OTHERS)),
+        "": frozenset(MODES),
         "place": frozenset(("at", "shifted", "unwound", "named", "moved")),
     }
-    fixed: ClassVar[frozenset[str]] = frozenset(("dialect", "reading", "read"))
+    fixed: ClassVar[frozenset[str]] = frozenset(("dialect", "reading", "read", *WITHOUT, *OTHERS))
 
     def role(self, part: Any) -> str:
         """Return what numbers of an item may be: of G, M and S each is another line."""
@@ -50,7 +50,7 @@ class Learning(Calls):
 
     def key(self) -> Hashable | None:
         """Return the state; None where nothing is learnt in it."""
-        if self.line < self.kept_until or any(without(self)) or self.frame != PLAIN:
+        if any(without(self)) or self.frame != PLAIN:
             return None
         place = self.place
         known = frozenset([axis for axis, value in place.at.items() if value is not None])
@@ -58,12 +58,13 @@ class Learning(Calls):
         return modes_of(self), frozenset(self.levels[-1]), bool(self.calls), sets, place.moved
 
     def take_key(self, key: Any) -> None:
-        """Take a state, but for where axes are."""
-        modes, _, _, (_, shifted, unwound, named), moved = key
+        """Take a state, with the axes that are lost in it."""
+        modes, _, _, (known, shifted, unwound, named), moved = key
         vars(self).update(zip(MODES, modes, strict=True))
         place = self.place
         place.shifted, place.unwound, place.named = {*shifted}, {*unwound}, {*named}
         place.moved = moved
+        place.at.update(dict.fromkeys(place.at.keys() - known))
 
     def told(self) -> dict[str, Any]:
         """Return where axes are."""
