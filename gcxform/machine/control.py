@@ -136,6 +136,11 @@ def inert_of(control: Mapping[str, Value]) -> frozenset[int]:
     return frozenset(codes) if isinstance(codes, list) else frozenset()
 
 
+def undeclared(control: Mapping[str, Value]) -> bool:
+    """Whether there is a setting that nothing which is loaded has declared."""
+    return not control.keys() <= {*_KNOWN, INERT, MACRO}
+
+
 def findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagnostic]:
     """Yield what is wrong with a section."""
     for name, value in control.items():

@@ -222,6 +222,8 @@ def _findings(document: TomlText, file: MachineFile, known: Known) -> Iterator[D
     yield from _offset_findings(document, file)
     yield from _table_findings(document, file, known)
     yield from _tool_findings(document, file)
+    if control.undeclared(file.control):
+        tuple(known.dialects.values())  # loads them all, and what they declare
     yield from control.findings(document, file.control)
 
 

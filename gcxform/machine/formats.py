@@ -78,11 +78,15 @@ class ControlFiles:
 
 
 class Known(NamedTuple):
-    """What plugins know of machines: kinematics, files of controls and presets, by name."""
+    """What plugins know of machines: kinematics, files of controls and presets, by name.
+
+    `dialects` are asked for only where a file has a setting that no loaded one has declared.
+    """
 
     kinematics: Kinds = MappingProxyType({})
     controls: Mapping[str, type[ControlFiles]] = MappingProxyType({})
     presets: Presets = MappingProxyType({})
+    dialects: Mapping[str, object] = MappingProxyType({})
 
 
 NONE = Known()

@@ -138,7 +138,7 @@ class Registry:
     @property
     def machines(self) -> Known:
         """What machine files can name."""
-        return Known(self.kinematics, self.controls, self.presets)
+        return Known(self.kinematics, self.controls, self.presets, self.dialects)
 
     def _find(
         self,
