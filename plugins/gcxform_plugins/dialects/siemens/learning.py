@@ -16,9 +16,10 @@ from gcxform_plugins.dialects.siemens.frames import Frame
 
 ROLES = {
     **dict.fromkeys((*"XYZABCIJKF", "CR"), "any"),
-    **dict.fromkeys("GMS", "code"),
+    **dict.fromkeys("GS", "code"),
     "N": "digits",
 }
+"""M codes are not here: they may return from a call, which counts in its place."""
 KINDS = frozenset(("word", "value", "named"))
 MODES = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres", "comp"),
@@ -45,7 +46,7 @@ class Learning(Calls):
     fixed: ClassVar[frozenset[str]] = frozenset(("dialect", "reading", "read", *WITHOUT, *OTHERS))
 
     def role(self, part: Any) -> str:
-        """Return what numbers of an item may be: of G, M and S each is another line."""
+        """Return what numbers of an item may be: of G and S each is another line."""
         return ROLES.get(part.names[0], "") if part.kind in KINDS and len(part.slots) == 1 else ""
 
     def key(self) -> Hashable | None:
