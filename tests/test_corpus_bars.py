@@ -15,10 +15,10 @@ import grbl_rules
 import corpus
 
 LEAST = {
-    "fanuc": (34, 4),
+    "fanuc": (34, 8),
     "grbl": (38, 37),
     "haas": (13, 9),
-    "linuxcnc": (128, 59),
+    "linuxcnc": (128, 86),
     "siemens": (54,),
     "heidenhain": (17,),
 }
