@@ -19,7 +19,7 @@ from gcxform.flow.listing import Listing, bare
 from gcxform.flow.lookup import Folders
 from gcxform.flow.numbered_files import begins_program
 from gcxform.flow.run_state import whole_number
-from gcxform.modal.meaning.meaning import OWN_MOVES, Meaning
+from gcxform.modal.meaning.meaning import OWN_MOVES, PRESETS, Meaning
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Expression, Statement, Word
 
@@ -67,7 +67,7 @@ def _goes(block: Block, meaning: Meaning, dialect: type[Dialect], codes: frozens
     placed |= bool(meaning.centres) or any(word.address in "IJKR@^" for word in words)
     computed = any(word.address in "GM" and isinstance(word.value, Expression) for word in words)
     leads = any(f"{word.address}{word.value.value:g}" in codes for word in words)
-    done = bool(meaning.call) or any(act.name in OWN_MOVES for act in meaning.acts)
+    done = bool(meaning.call) or any(act.name in OWN_MOVES | PRESETS for act in meaning.acts)
     flows = any(isinstance(item, Statement) for item in block.items)
     unread = block.error is not None or (meaning.refusal is not None and not flows)
     return placed or computed or leads or done or unread
