@@ -32,6 +32,7 @@ def schema(known: Known = NONE) -> dict[str, Any]:
     keys = parts["MachineFile"]["properties"]
     keys["format"] = format_schema(FORMAT)
     said = {"description": keys["control"]["description"]}
+    tuple(known.dialects.values())  # loads them all, and what they declare
     keys["control"] = opened(control.schema()) | {"type": "object"} | said
     readers = [name for name, each in known.controls.items() if each.reads("tools")]
     keys["kinematics"] |= _choice(known.kinematics)
