@@ -88,7 +88,7 @@ def _init(made: Any, frozen: bool) -> FunctionType:
     known = {"__name__": made.__module__, "_put": object.__setattr__, "_FACTORY": FACTORY}
     given, by_name, body = ["self"], ["*"], []
     for each in fields(made):
-        parameter, value = _given(each, known)
+        parameter, value = _given(each, known, "__slots__" in vars(made))
         if each.init:
             (by_name if each.kw_only else given).append(parameter)
         if value:
@@ -104,8 +104,11 @@ def _init(made: Any, frozen: bool) -> FunctionType:
     return method
 
 
-def _given(each: Field[Any], known: dict[str, Any]) -> tuple[str, str]:
-    """Return the parameter of a field, and what it is set to; names that both use become known."""
+def _given(each: Field[Any], known: dict[str, Any], slots: bool) -> tuple[str, str]:
+    """Return the parameter of a field, and what it is set to; names that both use become known.
+
+    A default that cannot be given stays with the class, if that has not slots instead.
+    """
     name, default = each.name, f"_default_{each.name}"
     if each.default_factory is not MISSING:
         known[default] = each.default_factory
@@ -114,7 +117,7 @@ def _given(each: Field[Any], known: dict[str, Any]) -> tuple[str, str]:
     if each.default is MISSING:
         return name, name if each.init else ""
     known[default] = each.default
-    return f"{name}={default}", name if each.init else default
+    return f"{name}={default}", name if each.init else default if slots else ""
 
 
 def _freeze(made: Any, slots: bool) -> None:

@@ -104,6 +104,7 @@ ASKED: dict[str, Callable[[Any], object]] = {
     "deleted": lambda k: delattr(k(1), "a"),
     "replaced": lambda k: dataclasses.replace(k(1), a=5),
     "copied": lambda k: (copy.copy(k(1)), copy.deepcopy(k(7)).a),
+    "what is its own": lambda k: sorted(getattr(k(1), "__dict__", ())),
     "fields": lambda k: [(f.name, f.type, f.init, f.compare) for f in dataclasses.fields(k)],
     "as a table": lambda k: dataclasses.asdict(k(1)),
     "matched": lambda k: k.__match_args__,
