@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from gcxform.plugin.registry import default_registry
+
 PROGRAM = "G21 G90 G17 G54\nG0 X0. Y0. Z5.\nG91\nG1 Z-6. F500.\nG90\nX10.\nM2\n"
 SAID = """
 import sys
@@ -95,3 +97,13 @@ def test_a_small_job(words: tuple[str, ...], tmp_path: Path) -> None:
     used = {"gcxform_plugins.dialects.linuxcnc", "gcxform_plugins.passes.absolute"}
     assert plugins - kinds <= used
     assert "gcxform_plugins.dialects.linuxcnc" in plugins
+
+
+def test_the_schema_of_machines_has_the_settings_of_every_dialect() -> None:
+    command = [sys.executable, "-m", "gcxform.cli", "schema", "machine"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    settings = {
+        each.name for kind in default_registry().dialects.values() for each in kind.settings
+    }
+    assert settings
+    assert [name for name in sorted(settings) if f'"{name}"' not in printed] == []

@@ -23,7 +23,7 @@ def schema(kind: Kind, registry: Registry | None = None) -> dict[str, Any]:
         return model_file.schema()
     installed = registry or default_registry()
     if kind == "machine":
-        _ = installed.dialects  # they have settings of their own
+        tuple(installed.dialects.values())  # are loaded: they have settings of their own
         return machine_file.schema(installed.machines)
     return _pipeline_schema(installed)
 
