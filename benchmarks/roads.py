@@ -67,9 +67,9 @@ ROADS = (
     run("pass arcs", "chords", 5.0, "arcs tolerance=0.005"),
     Road("compare", "straight", ("compare", "-f", "linuxcnc"), 3.5, beside="nearby"),
     Road("info", "straight", ("info", "-f", "linuxcnc"), 2.0),
-    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 100.0, GOAL,
+    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 18.0, GOAL,
          "siemens-twin"),
-    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 45.0, GOAL,
+    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 24.0, GOAL,
          "klartext-twin"),
 )  # fmt: skip
 
