@@ -93,7 +93,7 @@ def test_nothing_is_kept_where_nothing_can_be_written(
     def refuse(*_: object, **__: object) -> tuple[int, str]:
         raise PermissionError(13, "read-only")
 
-    monkeypatch.setattr(kept.tempfile, "mkstemp", refuse)
+    monkeypatch.setattr("tempfile.mkstemp", refuse)
     assert Grammar("kept_here", "grbl").parse("G1 X1").error is None
     assert files(folder) == []
 

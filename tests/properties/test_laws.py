@@ -233,7 +233,7 @@ def test_a_chain_follows_the_program(name: str) -> None:
         done.append(follow(chain, program) is not None)
 
     check()
-    assert sum(done) > 0.8 * len(done)  # few are refused
+    assert sum(done) > 0.7 * len(done)  # few are refused, and ten are drawn
 
 
 @st.composite

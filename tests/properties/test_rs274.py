@@ -155,7 +155,7 @@ def test_linuxcnc_reads_what_gcxform_writes(seeds: range) -> None:
         assert isinstance(old, CanonProgram)
         assert isinstance(new, CanonProgram), f"{new}\n{job[1]!r}\n{job[2].text.decode()}"
         check(job, old, new)
-    assert len(jobs) > 0.85 * len(seeds)
+    assert len(jobs) > 0.8 * len(seeds)  # 387 of the first 400; a share may have few
 
 
 Job = tuple[gx.Pipeline, bytes, gx.Result, "laws.Where"]
