@@ -8,16 +8,19 @@ from __future__ import annotations
 import re
 
 from gcxform.dialect.dialect import Dialect
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, has_sign
 
-SIGNS = {"macro-b": rb"M[ \t]*0*99(?![0-9])", "o-words": rb"\bendsub\b"}
+SIGNS = {
+    "macro-b": re.compile(rb"M[ \t]*0*99(?![0-9])"),
+    "o-words": re.compile(rb"ENDSUB\b"),
+}
 """What the text of every such file has, by the language of its control."""
 
 
 def is_subprogram(source: Source, dialect: type[Dialect]) -> bool:
     """Whether the program of a file returns to what has called it, and ends nothing."""
     sign = SIGNS.get(dialect.flow_rule.language)
-    if sign is None or not any(re.search(sign, each, re.IGNORECASE) for each in source.windows()):
+    if sign is None or not any(has_sign(sign, each) for each in source.windows()):
         return False
     from gcxform.flow.subprogram_file import only_returns
 

@@ -25,13 +25,13 @@ from gcxform.contract.passes import CompensationPass, Pass, resolved
 from gcxform.pipeline.chain import compensates
 from gcxform.pipeline.plan import Plan
 from gcxform.plugin.registry import default_registry
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, has_sign
 from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Toolpath
 
-CODE = re.compile(rb"[Gg][ \t]*0*4[ \t]*([012])")
+CODE = re.compile(rb"G[ \t]*0*4[ \t]*([012])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
-AXIS = re.compile(rb"[XYZxyz]")
+AXIS = re.compile(rb"[XYZ]")
 WHICH = ("kind", "plane", "source", "nth", "form", "side")
 WHERE = ("start", "end", "centre", "sweep", "radius")
 RESOLVED = (
@@ -64,8 +64,13 @@ def with_centre_path(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]
 
 def _begins_contour(source: Source) -> bool:
     """Whether a program has G41 or G42 outside of its comments."""
-    texts = (COMMENT.sub(b"", text) for text in source.windows() if CODE.search(text))
+    texts = (_bare(text) for text in source.windows() if has_sign(CODE, text))
     return any(found[1] != b"0" for text in texts for found in CODE.finditer(text))
+
+
+def _bare(text: bytes) -> bytes:
+    """Return a text in capital letters, without its comments."""
+    return COMMENT.sub(b"", text).upper()
 
 
 def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
@@ -77,8 +82,7 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
     on, left = False, True
     for text in texts:
         waiting.append(text)
-        codes = CODE.search(text) is not None
-        plain = COMMENT.sub(b"", text) if codes or not left else b""
+        plain = _bare(text) if not left or has_sign(CODE, text) else b""
         found = list(CODE.finditer(plain))
         if found:
             on = found[-1][1] != b"0"

@@ -53,6 +53,13 @@ MUTATIONS = (
         "tests/test_worker.py",
     ),
     Mutation(
+        "source: a sign in small letters is not seen",
+        "gcxform/syntax/source.py",
+        "letter in text or letter.lower() in text",
+        "letter in text",
+        "tests/properties/test_reading.py",
+    ),
+    Mutation(
         "heap: nothing is given back",
         "gcxform/system/heap.py",
         "elif _resident() > MORE * self.needed:",

@@ -1,6 +1,7 @@
 """Reading loses nothing, and reading by shapes is reading by the grammar."""
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Any
 
@@ -10,11 +11,13 @@ from hypothesis import strategies as st
 from lark import Token
 
 import gcxform as gx
+from gcxform.flow.by_itself import SIGNS
+from gcxform.pipeline.cutter_comp import CODE
 from gcxform.plugin.registry import default_registry
 from gcxform.proof.verify import WindowReader
 from gcxform.syntax.scan import Window
 from gcxform.syntax.shapes import Shape, instantiate, slots_of
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, has_sign
 from gcxform.syntax.tree import (
     COMPUTED,
     Block,
@@ -275,3 +278,16 @@ def test_any_bytes_are_run_or_refused(name: str, chain: str, program: bytes) -> 
     except gx.InputError as refusal:
         places = [finding.where.line if finding.where else 0 for finding in refusal.diagnostics]
     assert all(places)
+
+
+PARTS = (b"m", b"M", b"G", b"g", b"0", b"4", b"1", b"99", b" ", b"endsub", b"EndSub", b"_", b"\n")
+
+
+@given(st.lists(st.sampled_from(PARTS), max_size=8).map(b"".join))
+@example(b"x1 m099")
+@example(b"g 04 1")
+def test_signs_are_found_as_by_a_class_of_letters(text):
+    """What is asked of every program, quickly, has the answer of the plain pattern."""
+    for sign in (*SIGNS.values(), CODE):
+        plain = re.search(sign.pattern, text, re.IGNORECASE) is not None
+        assert has_sign(sign, text) == plain
