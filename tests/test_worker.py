@@ -67,6 +67,47 @@ def test_the_first_error_is_raised(kind):
     assert caught.value.render().count("two") == 1
 
 
+@pytest.mark.parametrize("kind", [Here, Process])
+def test_what_is_wrong_with_an_item_comes_behind_what_was_made_before(kind):
+    """However far ahead one is at work: of several errors the first in a program is told."""
+
+    def items(bad):
+        yield from range(bad)
+        raise InputError.one("GX761", "too long")
+
+    with kind(lambda number: [1, 2, 3][number]) as one:
+        found = ahead(one, items(2))
+        assert [next(found), next(found)] == [1, 2]
+        with pytest.raises(InputError, match="too long"):
+            next(found)
+    with kind(lambda number: [1, 2][number]) as one, pytest.raises((IndexError, RuntimeError)):
+        list(ahead(one, items(3)))
+
+
+def test_pieces_of_work_wait_in_their_order():
+    """Each is kept as it was given, and nobody hears of those behind one that has failed."""
+
+    def positive(column):
+        if column[0] < 0:
+            raise InputError.one("GX213", f"{column[0]:g}")
+        return column
+
+    columns = [np.full(size, float(size)) for size in (1000, 1, 500)]
+    with Process(positive) as one:
+        for column in columns:
+            one.begin(column)
+        assert one.full
+        for column in columns:
+            np.testing.assert_array_equal(one.end(), column)
+        for value in (-1.0, -2.0, 3.0):
+            one.begin(np.array([value]))
+        with pytest.raises(InputError, match="-1"):
+            one.end()
+        assert not one.busy
+        one.begin(np.array([5.0]))
+        assert one.end() == 5.0
+
+
 def test_what_nobody_foresaw_keeps_its_trace():
     with Process(lambda: {}["missing"]) as one:
         one.begin()

@@ -259,7 +259,7 @@ class Run:
                 if self.dialect.program_rule.needs_end:
                     self.ending.look(one.window, one.table)
                 self.books.add(one.window, one.table, one.read, len(one.path.given))
-                if proof.busy:
+                if proof.full:
                     self.findings = proof.end()
                 if self.verifier is not None:
                     given = one.window.lines, emitted.text, emitted.source, emitted.nth
@@ -271,7 +271,7 @@ class Run:
             if any(step.demands.feed_mode is not None for step in self.steps):
                 self._check_end()
         finally:
-            if proof.busy and not isinstance(sys.exception(), KeyboardInterrupt):
+            while proof.busy and not isinstance(sys.exception(), KeyboardInterrupt):
                 self.findings = proof.end()
         if self.verifier is not None:
             self._check_whole()

@@ -6,8 +6,9 @@ it is given later goes through memory that both can see. Where a process cannot 
 (another system than Linux, other threads, a process of a pool) the work is done here, when its
 result is needed.
 
-While a window is transformed and written, one process reads the next and another proves the one
-before. A worker ends with its parent.
+While a window is transformed and written, one process reads the next ones and another proves those
+before. Up to `DEPTH` of them wait for each, so that nobody waits because one window takes longer
+than another, and two cores are at work although three processes are. A worker ends with its parent.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
+from itertools import cycle
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 import numpy as np
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 Work = Callable[..., Result]
+DEPTH = 3  # pieces of work that a process may have before it; each takes the memory of a window
 LATER = 5  # niceness: the process that waits for all others goes first
 LINUX = sys.platform == "linux"
 PIECE = 1 << 30  # bytes; the system writes and reads less than two of these at once
@@ -46,22 +49,44 @@ HINT = "was there enough memory? A long program is read and proved by processes 
 
 
 class Worker(ABC, Generic[Result]):
-    """Does one piece of work after another; busy from the beginning of one to its end."""
+    """Does one piece of work after another, in order; `begun` and `ended` count them."""
+
+    depth = 1
 
     def __init__(self) -> None:
-        self.busy = False
+        self.begun = self.ended = 0
+
+    @property
+    def busy(self) -> bool:
+        """Whether there is work that was begun and not ended."""
+        return self.begun > self.ended
+
+    @property
+    def full(self) -> bool:
+        """Whether a piece has to be ended before the next can be begun."""
+        return self.begun - self.ended == self.depth
 
     def begin(self, *given: object) -> None:
         """Begin a piece of work."""
-        assert not self.busy
+        assert not self.full
         self._begin(given)
-        self.busy = True  # not before: nobody would ever end what could not be begun
+        self.begun += 1  # not before: nobody would ever end what could not be begun
 
     def end(self) -> Result:
-        """Wait for what was begun; return what it gave, or raise what it raised."""
+        """Wait for the first piece not ended; return what it gave, or raise what it raised.
+
+        Nobody hears of what was begun behind a piece that has failed.
+        """
         assert self.busy
-        self.busy = False
-        return self._end()
+        self.ended += 1
+        try:
+            return self._end()
+        except Exception:
+            while self.busy:
+                self.ended += 1
+                with suppress(Exception):
+                    self._end()
+            raise
 
     @abstractmethod
     def _begin(self, given: tuple[object, ...]) -> None: ...
@@ -94,14 +119,28 @@ def _may_copy() -> bool:
 
 
 def ahead(reader: Worker[Result], items: Iterable[object]) -> Iterator[Result]:
-    """Yield what a worker makes of the items, in order; it is at work on the next one meanwhile."""
-    for item in items:
-        done = [reader.end()] if reader.busy else []
+    """Yield what a worker makes of the items, in order; it is at work on the next ones meanwhile.
+
+    What is wrong with the items themselves is raised behind what was made of those before, so that
+    how far a worker is ahead makes no difference.
+    """
+    wrong: list[GcxformError] = []
+    for item in _until_wrong(items, wrong):
+        done = [reader.end()] if reader.full else []
         reader.begin(item)
         while done:
             yield done.pop()
-    if reader.busy:
+    while reader.busy:
         yield reader.end()
+    for error in wrong:
+        raise error
+
+
+def _until_wrong(items: Iterable[object], wrong: list[GcxformError]) -> Iterator[object]:
+    try:
+        yield from items
+    except GcxformError as error:
+        wrong.append(error)
 
 
 class Here(Worker[Result]):
@@ -123,15 +162,18 @@ class Here(Worker[Result]):
 class Process(Worker[Result]):
     """Has its work done by a copy of this process, which keeps what the work remembers.
 
-    Arrays arrive there, and come back, as copies that cannot be changed.
+    Arrays arrive there, and come back, as copies that cannot be changed. Each piece of work has a
+    place in memory that both see, for what is given and then for what is answered.
     """
+
+    depth = DEPTH
 
     def __init__(self, work: Work[Result]) -> None:
         from multiprocessing import get_context
 
         super().__init__()
         context = get_context("fork")
-        self.shared = os.memfd_create("gcxform")
+        self.shared = [os.memfd_create("gcxform") for _ in range(DEPTH)]
         self.here, there = context.Pipe()
         given = work, there, self.here, self.shared, os.getpid()
         self.process = context.Process(target=_serve, args=given, daemon=True)
@@ -140,7 +182,7 @@ class Process(Worker[Result]):
         try:
             self.process.start()
         except OSError:
-            os.close(self.shared)
+            self._close_shared()
             raise
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, ours)
@@ -148,11 +190,12 @@ class Process(Worker[Result]):
 
     def _begin(self, given: tuple[object, ...]) -> None:
         with suppress(ConnectionError):  # that it has died is said when it is waited for
-            self.here.send(_lay_down(self.shared, given))
+            self.here.send(_lay_down(self.shared[self.begun % DEPTH], given))
 
     def _end(self) -> Result:
         try:
-            error, result = _pick_up(self.shared, self.here.recv())
+            sizes = self.here.recv()
+            error, result = _pick_up(self.shared[(self.ended - 1) % DEPTH], sizes)
         except (EOFError, OSError):  # the latter if it died in the middle of what it said
             raise FileError.one("GX903", DIED, hint=HINT) from None
         if error is not None:
@@ -167,19 +210,27 @@ class Process(Worker[Result]):
         with suppress(ConnectionError):
             self.here.send(STOP)
         self.here.close()
-        os.close(self.shared)
+        self._close_shared()
         self.process.join()
 
+    def _close_shared(self) -> None:
+        for place in self.shared:
+            os.close(place)
 
-def _serve(work: Work[Any], there: Connection, here: Connection, shared: int, parent: int) -> None:
+
+def _serve(
+    work: Work[Any], there: Connection, here: Connection, shared: list[int], parent: int
+) -> None:
     """Do what is asked for, until nobody is left who could ask."""
     here.close()
     _end_with(parent)
     os.nice(LATER)
     heap = Heap()
     with suppress(EOFError, ConnectionError):
-        while (sizes := there.recv()) != STOP:
-            there.send(_answer(shared, _done(work, _pick_up(shared, sizes))))
+        for place in cycle(shared):
+            if (sizes := there.recv()) == STOP:
+                break
+            there.send(_answer(place, _done(work, _pick_up(place, sizes))))
             heap.give_back()
 
 

@@ -13,12 +13,27 @@ MUTATIONS = (
     Mutation(
         "run: the last window is not proved",
         "gcxform/pipeline/run.py",
-        "            if proof.busy and not",
-        "            if False and not",
+        "            while proof.busy and not",
+        "            while False and not",
         "tests/test_verify.py",
     ),
     _worker("what was raised is lost", "if error is not None:", "if False:"),
-    _worker("one after the other becomes one less", "    if reader.busy:\n", "    if False:\n"),
+    _worker("one after the other becomes one less", "    while reader.busy:\n", "    if False:\n"),
+    _worker(
+        "an error hides that of a window before",
+        "            while self.busy:\n",
+        "            while False:\n",
+    ),
+    _worker(
+        "all pieces of work have one place",
+        "_lay_down(self.shared[self.begun % DEPTH], given)",
+        "_lay_down(self.shared[0], given)",
+    ),
+    _worker(
+        "what is wrong with a text hides what is wrong before it",
+        "    except GcxformError as error:\n        wrong.append(error)\n",
+        "    except KeyError as error:\n        wrong.append(error)\n",
+    ),
     _worker("who stands beside threads is copied", "threading.active_count() == 1", "True"),
     _worker(
         "every column has one value throughout",
@@ -28,8 +43,8 @@ MUTATIONS = (
     _worker("parts lie upon each other", "        place += size\n", ""),
     _worker(
         "what could not be begun is waited for",
-        "        self._begin(given)\n        self.busy = True",
-        "        self.busy = True\n        self._begin(given)",
+        "        self._begin(given)\n        self.begun += 1",
+        "        self.begun += 1\n        self._begin(given)",
     ),
     _worker(
         "what the system did not take is left out",
