@@ -50,8 +50,8 @@ def respelled(
             text = translator.spelled(line, [each.decode("latin-1") for each in made])
             text = translator.replaced(line, said) if text is None and said else text
             text = raw if text is None and not changed else text
-        if text != raw and line >= translator.own:
-            raise _refusal(source, line, "this line would change, and stands in another file")
+        if text != raw and not translator.is_own(line):
+            raise _refusal(source, line, "this line would change, and stands in another program")
         if text is None:
             raise _refusal(source, line, "what this line became cannot be said in its language")
         if new.setdefault(line, text) != text:

@@ -140,13 +140,21 @@ class Translator(LineShapes):
 
         They are put behind those there are. Raises InputError for two files that differ.
         """
+        try:
+            return self.annexing().file(name)
+        except LookupFailedError as why:
+            raise self.refusal("GX227", f"{name}: {why}") from None
+
+    def annexing(self) -> Annexed:
+        """Return what puts the lines of files behind those there are."""
         if self.annexed is None:
             folders = Folders(self.reading.subprograms, self.dialect.flow_rule.lookup)
             self.annexed = Annexed(self.lines, folders)
-        try:
-            return self.annexed.file(name)
-        except LookupFailedError as why:
-            raise self.refusal("GX227", f"{name}: {why}") from None
+        return self.annexed
+
+    def is_own(self, line: int) -> bool:
+        """Whether a line may change: one of a file that is called may not, as others call it."""
+        return line < self.own
 
     def at_end(self) -> None:
         """Come to the end of a file: that of the program is its end."""

@@ -30,11 +30,47 @@ SPELLED = "gcxform/proof/spelled_out.py"
 WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
+UNITS = "plugins/gcxform_plugins/dialects/siemens/units.py"
 LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
 LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
 
 MUTATIONS = (
+    Mutation(
+        "siemens archive: the first program is executed, whatever it is",
+        UNITS,
+        "(u for _, kind, u in self.units if kind == MAIN)",
+        "(u for _, kind, u in self.units if kind in PROGRAMS)",
+        f"{CASES}[dialects/siemens/archive]",
+    ),
+    Mutation(
+        "siemens archive: a program goes on in the next one",
+        UNITS,
+        "self.line in self.heads - {self.main.start}",
+        "self.line in self.heads - {*range(self.own)}",
+        f"{CASES}[dialects/siemens/another-program]",
+    ),
+    Mutation(
+        "siemens archive: of two main programs the first is taken",
+        UNITS,
+        "if len(heads) > 1:",
+        "if len(heads) > 2:",
+        f"{CASES}[dialects/siemens/archive-of-two]",
+    ),
+    Mutation(
+        "siemens archive: other programs of the file change",
+        UNITS,
+        "return line in self.main",
+        "return line < self.own",
+        f"{CASES}[dialects/siemens/archive-kept]",
+    ),
+    Mutation(
+        "siemens archive: what stands beside it does not count",
+        UNITS,
+        "self._texts(beside) != self._texts(here)",
+        "self._texts(beside) == []",
+        f"{CASES}[dialects/siemens/archive-beside]",
+    ),
     Mutation(
         "siemens written: a cycle without a length",
         GATHERING,
@@ -579,8 +615,8 @@ MUTATIONS = (
     Mutation(
         "siemens: a line of another file is changed in silence",
         "gcxform/emit/respelling.py",
-        "        if text != raw and line >= translator.own:\n",
-        "        if text is None and line >= translator.own:\n",
+        "        if text != raw and not translator.is_own(line):\n",
+        "        if text is None and not translator.is_own(line):\n",
         f"{CASES}[dialects/siemens/call-kept]",
     ),
     Mutation(

@@ -47,7 +47,7 @@ class Calls(Computing):
         """Return the name that a line calls, if it may be one; nothing for all else."""
         bare = [i for i in items if i.kind not in ("label", "main_number") and i.name != "N"]
         item = bare[0] if bare else None
-        if item is None or not self.reading.subprograms:
+        if item is None or not self.finds_programs:
             return ""
         if item.kind == "word" and item.name == "L":
             return f"L{item.numbers[0]}"
@@ -55,6 +55,11 @@ class Calls(Computing):
             return "" if self.knows(item.name) else item.name
         found = CALLED.match(item.name) if item.kind == "call" else None
         return "" if found is None or self.knows(found[1]) else found[1]
+
+    @property
+    def finds_programs(self) -> bool:
+        """Whether there is a place where subprograms may be."""
+        return bool(self.reading.subprograms)
 
     # --- in and out ---
 

@@ -93,6 +93,7 @@ kept as it stands, with all that is lost behind it.
 | SETAL, SETMS, FGROUP, ACC[], FA[] | tell, or say how fast: they move nothing | PM |
 | PROC, what nobody calls | its parameters are not known | |
 | `NAME(...)`, `L10 P2` | `NAME.SPF`, `.MPF` beside the program; VAR is the caller's own | PM |
+| `%_N_NAME_MPF` | begins a program; calls find the others of the file; two MPF: refused | PM 43 |
 | what is left out of a call | its default in PROC, or 0 | PM |
 | SAVE, MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
 | subprograms that are not there, synchronous actions, DEFINE | refused | |

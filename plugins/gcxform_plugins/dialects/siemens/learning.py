@@ -11,8 +11,8 @@ from collections.abc import Hashable, Mapping
 from operator import attrgetter
 from typing import Any, ClassVar
 
-from gcxform_plugins.dialects.siemens.calls import Calls
 from gcxform_plugins.dialects.siemens.frames import Frame
+from gcxform_plugins.dialects.siemens.units import Units
 
 ROLES = {
     **dict.fromkeys((*"XYZABCIJKF", "CR"), "any"),
@@ -36,7 +36,7 @@ PLAIN = Frame()
 modes_of, without = attrgetter(*MODES), attrgetter(*WITHOUT)
 
 
-class Learning(Calls):
+class Learning(Units):
     """Says what a line hangs on."""
 
     keyed: ClassVar[Mapping[str, frozenset[str]]] = {

@@ -281,7 +281,7 @@ class Programs(Learning):
             self.assumed[self._told()] = None
         if self.standing:
             self.assumed[STANDS.format(self._few({line for line, _ in self.standing}))] = None
-        return iter(())
+        return super().closing()
 
     def _told(self) -> str:
         few = self._few({line for line, _ in self.kept_lines})

@@ -96,18 +96,12 @@ class Statements(gx.Translator):
             "command": self._command,
             "call": self._call,
             "label": self._nothing,
-            "header": self._header,
+            "header": self._nothing,
             "main_number": self._number,
         }
 
     def _nothing(self, line: Line, item: gx.Item) -> None:
-        """Take labels: jumps are refused."""
-
-    def _header(self, line: Line, item: gx.Item) -> None:
-        """Take the name of the program. Raises InputError where another one begins."""
-        before = (other for at in range(self.line) for other in self.items(at))
-        if any(other.kind != "comment" for other in before):
-            self.refuse("here another program begins", item, "keep each program in its own file")
+        """Take labels, which jumps look for, and the name of the program."""
 
     def _number(self, line: Line, item: gx.Item) -> None:
         if item.numbers[0].isdigit():

@@ -40,7 +40,7 @@ class Call:
 class Variables(Blocks):
     """Keeps the variables of a program.
 
-    calls    those that are open
+    calls    those that are open;  main: the lines of the program that nothing has called
     r        R parameters;  levels: the variables of each call, by name in capitals
     stopped  STOPRE has been, and nothing has moved since
     """
@@ -50,6 +50,7 @@ class Variables(Blocks):
         self.r: dict[int, Value] = {}
         self.levels: list[dict[str, Cell]] = [{}]
         self.calls: list[Call] = []
+        self.main = range(self.own)
         self._structures: dict[int, Structure] = {}
         self.stopped = False
         self.worth = Expressions(self.r, self._cell, self._system)
@@ -57,7 +58,7 @@ class Variables(Blocks):
     @property
     def part(self) -> range:
         """The lines of the file that is executed."""
-        return self.calls[-1].lines if self.calls else range(self.own)
+        return self.calls[-1].lines if self.calls else self.main
 
     @property
     def structure(self) -> Structure:
