@@ -30,12 +30,63 @@ SPELLED = "gcxform/proof/spelled_out.py"
 WRITTEN = "tests/test_siemens_written.py::test_words_become_lines_in_its_idiom"
 COMPARED = "tests/test_siemens_written.py::test_what_is_written_is_read_and_compared"
 
+TEXTS = "plugins/gcxform_plugins/dialects/siemens/texts.py"
+TOLD = "tests/test_siemens_texts.py"
 UNITS = "plugins/gcxform_plugins/dialects/siemens/units.py"
 LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
 LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
 
 MUTATIONS = (
+    Mutation(
+        "siemens texts: the last place of a character is the first",
+        TEXTS,
+        ".rfind(",
+        ".find(",
+        f"{TOLD}::test_functions_give_what_the_manual_says",
+    ),
+    Mutation(
+        "siemens texts: the second place of a part is its end",
+        TEXTS,
+        "at + _count(count)",
+        "_count(count)",
+        f"{TOLD}::test_functions_give_what_the_manual_says",
+    ),
+    Mutation(
+        "siemens texts: a truth stands in a text as a number",
+        EXPRESSIONS,
+        "if self._kind(node) in UNTOLD:",
+        'if self._kind(node) == "CHAR":',
+        f"{TOLD}::test_what_no_source_tells_has_no_value",
+    ),
+    Mutation(
+        "siemens texts: a part goes on beyond the end",
+        TEXTS,
+        "if not at < len(whole) or end > len(whole):",
+        "if not at < len(whole):",
+        f"{TOLD}::test_what_no_source_tells_has_no_value",
+    ),
+    Mutation(
+        "siemens texts: what may be a number is none",
+        TEXTS,
+        "if not PLAIN.fullmatch(whole) and not NO_NUMBER.search(whole):",
+        "if not whole:",
+        f"{TOLD}::test_what_no_source_tells_has_no_value",
+    ),
+    Mutation(
+        "siemens texts: a text is as long as it likes",
+        "plugins/gcxform_plugins/dialects/siemens/cells.py",
+        "and len(found) > self.most",
+        "and len(found) > 4 * self.most",
+        f"{TOLD}::test_what_no_source_tells_has_no_value",
+    ),
+    Mutation(
+        "siemens texts: an empty one changes nothing",
+        "plugins/gcxform_plugins/dialects/siemens/variables.py",
+        "            cell.put(at + k, each)\n",
+        "            cell.put(at + k, each or cell.values[at + k])\n",
+        f"{TOLD}::test_an_empty_text_takes_the_place_of_another",
+    ),
     Mutation(
         "siemens archive: the first program is executed, whatever it is",
         UNITS,

@@ -71,8 +71,11 @@ class Calls(Computing):
             self.refuse(f"{name} is called under MCALL or compensation")
         self.look_for_tangents(self.lines[lines.start : lines.stop])
         proc = self._proc_of(name, lines)
-        times, given = self._given()
-        level = self._bound(proc, given)
+        try:
+            times, given = self._given()
+            level = self._bound(proc, given)
+        except v.NoValueError as why:
+            raise self.refusal(why.code, why.message, None, why.hint) from None
         self.decides = True
         self.calls.append(Call(lines, self.at, times))
         self.levels.append(level)
@@ -162,7 +165,9 @@ class Calls(Computing):
                 if not why.lost:
                     raise
                 found = LOST
-        return Cell(kind, (), [found])
+        cell = Cell(kind, (), [LOST], self.length_of(parameter))
+        cell.put(0, found)
+        return cell
 
     def _proc(self, node: Node) -> None:
         """Take parameters: those of a call are known already."""

@@ -54,11 +54,15 @@ def initial(kind: str) -> Value:
 
 @dataclass
 class Cell:
-    """A variable: its type, its size in each dimension (none for a single value), its values."""
+    """A variable: its type, its size in each dimension (none for a single value), its values.
+
+    `most` is how many characters a text may have, where that is said.
+    """
 
     kind: str
     size: tuple[int, ...] = ()
     values: list[Value] = field(default_factory=list)
+    most: int | None = None
 
     @classmethod
     def new(cls, kind: str, size: tuple[int, ...] = ()) -> Cell:
@@ -78,6 +82,13 @@ class Cell:
                 raise v.NoValueError(f"element {each} of an array from 0 to {size - 1}")
             at = at * size + each
         return at
+
+    def put(self, at: int, value: Value) -> None:
+        """Set one of the values. Raises NoValueError for what the type does not take."""
+        found = converted(self.kind, value)
+        if isinstance(found, str) and self.most is not None and len(found) > self.most:
+            raise v.NoValueError(f"a text of {len(found)} characters in a STRING[{self.most}]")
+        self.values[at] = found
 
     def lose(self) -> None:
         """Forget its values."""

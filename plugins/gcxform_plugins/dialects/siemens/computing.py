@@ -20,6 +20,9 @@ from gcxform_plugins.dialects.siemens.structure import StructureError
 from gcxform_plugins.dialects.siemens.variables import AXES
 
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
+MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
+BRACKETS = str.maketrans("()", "[]")
+UNTOLD = "messages of which only the control knows the text are left out"
 AS_THEY_STAND = frozenset(("word", "bare", "label", "sequence", "call", "text_call"))
 
 
@@ -47,7 +50,7 @@ class Computing(Deciding):
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line. Raises InputError."""
         if not any(self._computes(item) for item in items):
-            return self._plainly(items)
+            return self._plainly(items) if not self._tells(items) else self._message()
         text = self.lines[self.line]
         try:
             tree = self.tree_of(text)
@@ -62,6 +65,27 @@ class Computing(Deciding):
         if not straight.strip():
             return []
         return self.learnt_text(straight, self._plainly)
+
+    def _tells(self, items: Sequence[gx.Item]) -> bool:
+        """Whether a line only shows a text that is computed, and does not stay as it stands."""
+        rest = [i for i in items if i.kind not in ("label", "main_number") and i.name != "N"]
+        calls = [i for i in rest if i.kind == "call" and MESSAGE.match(i.name)]
+        return len(rest) == len(calls) == 1 and not self.reading.stays
+
+    def _message(self) -> list[str]:
+        """Return the comment for a text that is shown; none for what only the control knows."""
+        try:
+            tree = self.tree_of(self.lines[self.line])
+            call = next(node for node in tree.children if rule_of(node) == "call")
+            slots = next(node for node in call.children if rule_of(node) == "arguments").children
+            return [f"({self.worth.text(self.worth.of(slots[0].children[0])).translate(BRACKETS)})"]
+        except (UnexpectedInput, IndexError):
+            self.refuse("this message is not read")
+        except v.NoValueError as why:
+            if not why.lost:
+                raise self.refusal(why.code, why.message, None, why.hint) from None
+            self.assumed[UNTOLD] = None
+            return []
 
     def _plainly(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line that does not compute."""

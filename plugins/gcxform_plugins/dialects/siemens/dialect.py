@@ -80,6 +80,8 @@ kept as it stands, with all that is lost behind it.
 | AND beside a comparison, no brackets | refused where the usual reading differs | PM 444 |
 | DIV, TRUNC, ROUNDUP | cut, cut, up also below zero | PM 443, JA 1-70 |
 | MOD | of positive whole numbers; others are refused | [K] |
+| STRLEN SUBSTR INDEX RINDEX NUMBER ISNUMBER TOUPPER TOLOWER | from 0; -1: not there | JP 74 |
+| `<<` | joins texts and numbers; of BOOL and CHAR: refused | JP 74 |
 | IF ELSE, WHILE, REPEAT UNTIL, LOOP | as structures, up to the line that ends them | PM |
 | FOR | up by one; its variable is lost behind it | [K] |
 | GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
@@ -99,7 +101,7 @@ kept as it stands, with all that is lost behind it.
 | subprograms that are not there, synchronous actions, DEFINE | refused | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
-| `MSG("...")` | a comment | PM |
+| `MSG("..."<<R1)` | a comment; of unknown values: left out | PM |
 | G291 | ISO dialects: refused | PM |
 
 Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programming 12/2019

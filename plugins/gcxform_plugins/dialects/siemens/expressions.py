@@ -17,6 +17,7 @@ from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.arithmetic import COUNTS, SINUMERIK, bits
 from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value
 from gcxform_plugins.dialects.siemens.place import text_of
+from gcxform_plugins.dialects.siemens.texts import FUNCTIONS, TRUTHS, UNTOLD, of_texts
 
 PARAMETER = re.compile(r"R[0-9]+")
 CONSTANTS = {"TRUE": 1.0, "FALSE": 0.0}
@@ -85,11 +86,11 @@ class Expressions(v.Evaluator):
         if rule == "negated":
             return self._prefixed(str(children[0]).upper(), children[1])
         if rule == "converted":
-            return self.text(self.of(children[1]))
+            return self._told(children[1])
         if rule == "function":
             return self._function(str(children[0]).upper(), children[1].children)
         if rule == "joined":
-            return self.text(self.of(children[0])) + self.text(self.of(children[2]))
+            return self._told(children[0]) + self._told(children[2])
         if rule == "expression" and any(
             _rule(each) in LOGIC for each in children if _is_tree(each)
         ):
@@ -152,6 +153,28 @@ class Expressions(v.Evaluator):
         assert b is not None
         return self.checked(self.arithmetic.operators[name](a, b))
 
+    def _told(self, node: Any) -> str:
+        """Return what a node is worth as a part of a text. Raises NoValueError."""
+        if self._kind(node) in UNTOLD:
+            raise v.NoValueError("how a BOOL or a CHAR stands in a text no source tells")
+        return self.text(self.of(node))
+
+    def _kind(self, node: Any) -> str:
+        """Return the type of a node, if it is one that does not stand in texts as others do."""
+        if not _is_tree(node):
+            return ""
+        rule, children = _rule(node), node.children
+        if rule == "bracketed":
+            return self._kind(children[0])
+        if rule == "variable":
+            cell = self.find(str(children[0]).upper())
+            known = "BOOL" if str(children[0]).upper() in TRUTHS else ""
+            return known if cell is None else cell.kind
+        if rule == "function":
+            return "BOOL" if str(children[0]).upper() in TRUTHS else ""
+        negated = rule == "negated" and str(children[0]).upper() == "NOT"
+        return "BOOL" if negated or rule in (*LOGIC, "expression") else ""
+
     def text(self, value: Value) -> str:
         """Return a value as a text has it. Raises NoValueError."""
         if isinstance(value, str):
@@ -204,6 +227,8 @@ class Expressions(v.Evaluator):
         return tuple(int(each) for each in found)
 
     def _function(self, name: str, arguments: Sequence[Any]) -> Value:
+        if name in FUNCTIONS:
+            return of_texts(name, [self._given(each) for each in arguments])
         function = self.arithmetic.functions.get(name)
         if function is None:
             raise lost(f"what {name}(...) gives")
@@ -211,10 +236,18 @@ class Expressions(v.Evaluator):
             raise v.NoValueError(f"{name} takes another number of arguments")
         return self.checked(float(function(*(self._argument(each) for each in arguments))))
 
-    def _argument(self, slot: Any) -> float:
+    def _given(self, slot: Any) -> float | str:
         if not slot.children:
             raise v.NoValueError("an argument is missing")
-        return self.number(slot.children[0])
+        value = self.of(slot.children[0])
+        assert value is not None
+        return value
+
+    def _argument(self, slot: Any) -> float:
+        value = self._given(slot)
+        if isinstance(value, str):
+            raise v.NoValueError("a text where a number is due")
+        return self.checked(value)
 
 
 def _rule(node: Tree[Token]) -> str:

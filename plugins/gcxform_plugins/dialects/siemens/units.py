@@ -44,11 +44,11 @@ class Units(Calls):
 
     def run(self) -> Iterator[tuple[int, str]]:
         """Yield blocks with the line that each is for. Raises InputError."""
-        self._check()
+        self._one_is_meant()
         yield from super().run()
 
-    def _check(self) -> None:
-        """Refuse what does not say which program is meant, or is of none. Raises InputError."""
+    def _one_is_meant(self) -> None:
+        """Refuse where it is not said which program is meant. Raises InputError."""
         if not self.units:
             return
         heads = [lines.start for _, kind, lines in self.units if kind == MAIN]

@@ -141,8 +141,7 @@ class Variables(Blocks):
         if at + len(given) > len(cell.values):
             raise v.NoValueError("more values than elements")
         for k, each in enumerate(given):
-            if each != "":
-                cell.values[at + k] = converted(cell.kind, each)
+            cell.put(at + k, each)
 
     def _values(self, node: Any) -> list[Value]:
         """Return the values of an assignment: several for SET and lists."""
@@ -190,13 +189,18 @@ class Variables(Blocks):
 
     def _def(self, node: Node) -> None:
         """Define variables."""
-        kind = type_of(node)
+        kind, most = type_of(node), self.length_of(node)
         for each in (
             c for c in node.children if isinstance(c, Tree) and rule_of(c) == "definition"
         ):
-            self._define(kind, each)
+            self._define(kind, most, each)
 
-    def _define(self, kind: str, node: Node) -> None:
+    def length_of(self, node: Node) -> int | None:
+        """Return how long texts may be by a definition; None where it does not say."""
+        found = next((c for c in node.children if rule_of(c) == "length"), None)
+        return None if not isinstance(found, Tree) else self.worth.indices(found)[0]
+
+    def _define(self, kind: str, most: int | None, node: Node) -> None:
         name, *rest = node.children
         index = next((c for c in rest if isinstance(c, Tree) and rule_of(c) == "index"), None)
         value = next((c for c in rest if c is not index), None)
@@ -205,6 +209,7 @@ class Variables(Blocks):
             self.refuse(f"{name} is a word of the control, and no name for a variable")
         size = self.worth.indices(index) if index is not None else ()
         cell = self.levels[-1][upper] = Cell.new(kind, size)
+        cell.most = most
         if value is None:
             return
         try:
