@@ -28,7 +28,7 @@ WAY_HOME: Final = (
     "G91 G28 Z0 and the like can be said by G53: give the machine file where home and the zero of "
     "the work offset are, [home.G28] and [work-offset.G54]"
 )
-SPLINES: Final = frozenset({"G5", "G5.1", "G5.2"})
+SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -99,8 +99,6 @@ class CodeWords:
             self.draft.refuse(word, what, put_before("offsets"))
         if code is not None and code.effect is Effect.INERT:
             self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")
-        if name in SPLINES:
-            self.draft.refuse(word, what, put_before("segment", options="chord-error=2um"))
         rule = self.source.cycle_rule
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name not in EXPANDED or cycle is None or cycle.refused:
@@ -121,7 +119,7 @@ class CodeWords:
         if group != "motion":
             return False
         # A spline that goes nowhere is left out, and its words are.
-        left_out = name in ("G5", "G5.1") and self.key.role is Role.NONE
+        left_out = name in SPLINES and self.key.role is Role.NONE
         stays = self.key.as_it_stands or self.key.thread or self.key.tap
         return left_out or not stays or self.key.silent
 

@@ -15,6 +15,7 @@ from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
 from gcxform.emit.own_blocks import own_blocks
 from gcxform.emit.tapping import Taps
+from gcxform.modal.meaning.tables import NURBS, NURBS_END
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints, Small
 from gcxform.toolpath.path import Event, Form, Given
@@ -34,7 +35,8 @@ class Pieces:
 
     count     (live,) rows of each line
     expanded_line
-              (live,) whether it calls a cycle that is written as plain moves
+              (live,) whether it calls a cycle, or has a control point of a spline of weights and
+              knots, and is written as plain moves
     line      (pieces,) line of the window
     row       (pieces,) row of the path; only where `has_row`
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
@@ -78,6 +80,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     special = _special(task, taps)
     expanded = cycle & ~special & ~taps.lines & _in_moves(task)
     opens, closes = around(expanded)
+    expanded |= _of_nurbs(task)
     before, behind = own_blocks(task, count)
     between = [*opens, *before, *_between_moves(task, expanded), *closes, *behind]
     moves = [given for given in path.given if given.moves]
@@ -133,6 +136,12 @@ def _in_moves(task: Task) -> Flags | bool:
     if task.manner.expands or not foreign:
         return task.manner.expands
     return np.isin(task.read.modes.cycle, list(foreign))
+
+
+def _of_nurbs(task: Task) -> Flags:
+    """Return the lines (live,) of splines of weights and knots that have become lines."""
+    points = np.isin(task.read.modes.motion, (NURBS, NURBS_END))
+    return points if task.manner.crossing else np.zeros_like(points)
 
 
 def _special(task: Task, taps: Taps) -> Flags:

@@ -84,6 +84,7 @@ class Plan:
     m_codes  M codes of the source, and what takes the place of each in the output
     drop     codes of the source that are left out
     inert    M codes of the target that leave its axes where they stand
+    chord_error  mm within which splines become lines without a step; 0: they stay
     told     takes what each step changes, for who asks why lines differ; None: nobody does
     """
 
@@ -107,6 +108,7 @@ class Plan:
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
     inert: frozenset[str] = frozenset()
+    chord_error: float = 0.0
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
@@ -347,7 +349,7 @@ class Plan:
 
     def promised(self) -> float:
         """Return the sum of what the passes promise (mm); inf if one promises nothing."""
-        return sum(step.promise for step in self.path_passes)
+        return sum(step.promise for step in self.path_passes) + self.chord_error
 
     @property
     def bounded(self) -> bool:

@@ -21,16 +21,16 @@ from gcxform.modal.program_end import Ending, Frame, frame_for, with_ends
 from gcxform.modal.reader import Apart, WindowReader
 from gcxform.pipeline.blind_moves import check_blind
 from gcxform.pipeline.called_files import not_done_yet
-from gcxform.pipeline.cutter_comp import check_compensated, whole_stretches, with_centre_path
+from gcxform.pipeline.cutter_comp import check_compensated
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.reasons import changed_lines
-from gcxform.pipeline.said_in_moves import said_in_moves
+from gcxform.pipeline.said_in_moves import said_in_moves, settled
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
-from gcxform.pipeline.whole_cuts import whole_cuts, whole_sections
+from gcxform.pipeline.whole_cuts import undivided
 from gcxform.pipeline.written_back import SpelledOut, WrittenBack, structure_of
 from gcxform.proof.findings import Findings
 from gcxform.proof.inventory import Books, Others
@@ -84,7 +84,7 @@ class Run:
         if not plan.copies:
             self.source = written_out(source, plan.read_as, plan.machine_reading, plan.target)
         self.executes = self.source is not source
-        self.plan, said = with_centre_path(plan, self.source)
+        self.plan, said = settled(plan, self.source)
         self.steps, self.assumed = self.plan.path_passes, (*self.source.assumed, *said)
         self.executed = getattr(self.source, "executed", None)
         self.files = not_done_yet(plan, getattr(self.source, "files", ()))
@@ -199,12 +199,7 @@ class Run:
                 self._copy(text, out, whole)
                 progress(len(text))
             return
-        if any(step.demands.resolves for step in self.steps):
-            texts = whole_stretches(texts)
-        if any(step.demands.reads_vectors for step in self.steps):
-            texts = whole_sections(texts)
-        elif any(step.demands.whole_cuts for step in self.steps):
-            texts = whole_cuts(texts)
+        texts = undivided(texts, self.plan)
         read = WindowReader(self.dialect).read_apart
         long = self.source.is_long(size)
         proved = long and self.verifier is not None

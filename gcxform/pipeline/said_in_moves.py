@@ -3,10 +3,14 @@
 Canned cycles that it has not become their moves, and ways home to another kind of point become
 moves in the machine, where it is known where home is. A compensation finds the moves of all cycles:
 the errors of a machine on the way down a hole are others than where it begins.
+
+Splines that it has not become lines within `CHORD_ERROR` of them, before the first step, unless one
+of the steps makes lines of them by an error that it was given.
 """
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -14,11 +18,50 @@ import numpy as np
 from gcxform.contract.passes import resolved
 from gcxform.modal.interpreter import Interpreted
 from gcxform.pipeline.chain import compensates
+from gcxform.pipeline.cutter_comp import with_centre_path
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.syntax.scan import Window
+from gcxform.syntax.source import Source
 from gcxform.toolpath.cycles_as_moves import cycles_as_moves
+from gcxform.toolpath.facts import LINEAR_ONLY
 from gcxform.toolpath.path import Form, Toolpath
+from gcxform.toolpath.splines import spline_chords, splines_as_lines
+
+CHORD_ERROR = 0.002
+"""mm; a step `segment` takes another."""
+MEASURED = 0.01  # of it: what splines leave to the proof, whose bound is an upper one
+SPLINE = re.compile(rb"[Gg][ \t]*0*(5)(?:\.([12])?0*)?(?![0-9.])")
+COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
+SAID = "splines become lines within 2 um of them; the pass segment takes another chord error"
+
+
+def settled(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]:
+    """Return a plan with what a program needs and nobody has asked for, and what is to be said."""
+    plan, centre = with_centre_path(plan, source)
+    plan, lines = with_lines_for_splines(plan, source)
+    return plan, (*centre, *lines)
+
+
+def with_lines_for_splines(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]:
+    """Return a plan that makes lines of splines where the target has none, and what is to be said.
+
+    The plan itself where one of its steps makes lines of them, or there are none.
+    """
+    by_a_step = any(LINEAR_ONLY in step.ensures for step in plan.path_passes)
+    if plan.source is plan.target or by_a_step:
+        return plan, ()
+    texts = (COMMENT.sub(b"", text) for text in source.windows() if SPLINE.search(text))
+    if not any(_foreign(plan, found) for text in texts for found in SPLINE.finditer(text)):
+        return plan, ()
+    return replace(plan, chord_error=CHORD_ERROR), (SAID,)
+
+
+def _foreign(plan: Plan, found: re.Match[bytes]) -> bool:
+    """Whether a code of the source is a spline, which the target has not."""
+    name = ".".join(each.decode() for each in found.groups() if each)
+    code = plan.source.codes.get(f"G{name}")
+    return code is not None and code.group == "motion" and plan.target.codes.get(f"G{name}") != code
 
 
 def said_in_moves(
@@ -29,6 +72,9 @@ def said_in_moves(
     They become so behind the last of the steps that prove their paths by what they were given;
     `done` is how many have been run.
     """
+    if plan.chord_error and path.has_splines:
+        with placing(window, file):
+            path = _straight(path, plan.chord_error)
     if done != resolved(plan.path_passes):
         return path
     path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
@@ -38,6 +84,13 @@ def said_in_moves(
     with placing(window, file):
         here = np.isin(read.modes.cycle[path.block], list(foreign))
         return cycles_as_moves(path, None if whole else here)
+
+
+def _straight(path: Toolpath, chord_error: float) -> Toolpath:
+    """Return a path with lines for its splines, within a chord error (mm)."""
+    rows, pieces = np.flatnonzero(path.is_spline), np.ones(len(path), np.int64)
+    pieces[rows] = spline_chords(path, rows, chord_error * (1.0 - MEASURED))
+    return splines_as_lines(path, pieces)
 
 
 def _homed(plan: Plan, read: Interpreted, path: Toolpath) -> Toolpath:

@@ -1,6 +1,7 @@
-"""Programs in windows that divide no cut, and no section with tool vectors.
+"""Programs in windows that divide nothing that is to be seen as a whole.
 
-A cut is what is between two rapids, a section what is between a tool length and the next G49.
+A cut is what is between two rapids, a section what is between a tool length and the next G49, and
+a spline of weights and knots is known at its G5.3.
 """
 
 from __future__ import annotations
@@ -9,9 +10,25 @@ import re
 from collections.abc import Callable, Iterator
 from itertools import pairwise
 
+from gcxform.pipeline.cutter_comp import whole_stretches
+from gcxform.pipeline.plan import Plan
+
 MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
 LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
+KNOTS = re.compile(rb"[Gg][ \t]*0*5[ \t]*\.[ \t]*([23])0*(?![0-9])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
+
+
+def undivided(texts: Iterator[bytes], plan: Plan) -> Iterator[bytes]:
+    """Yield texts of whole lines that divide nothing that a plan has to see as a whole."""
+    demands = [step.demands for step in plan.path_passes]
+    if plan.source is not plan.target and "G5.2" in plan.source.codes:
+        texts = _divided(texts, _last_spline)
+    if any(each.resolves for each in demands):
+        texts = whole_stretches(texts)
+    if any(each.reads_vectors for each in demands):
+        return whole_sections(texts)
+    return whole_cuts(texts) if any(each.whole_cuts for each in demands) else texts
 
 
 def whole_cuts(texts: Iterator[bytes]) -> Iterator[bytes]:
@@ -36,6 +53,17 @@ def _divided(texts: Iterator[bytes], place: Callable[[bytes], int]) -> Iterator[
             waiting = waiting[at:]
     if waiting:
         yield waiting
+
+
+def _last_spline(blank: bytes) -> int:
+    """Return where the line begins with which an open spline begins; the end if none is open."""
+    opens = -1
+    for found in KNOTS.finditer(blank):
+        if found[1] == b"3":
+            opens = -1
+        elif opens < 0:
+            opens = found.start()
+    return len(blank) if opens < 0 else _line_of(blank, opens)
 
 
 def _last_section(blank: bytes) -> int:

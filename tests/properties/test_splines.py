@@ -99,6 +99,52 @@ def test_what_linuxcnc_refuses_is_refused():
     assert refused > COUNT / 4
 
 
+# --- splines of weights and knots, as lines for another control ---
+
+
+def knotted(pick: random.Random) -> str:
+    """Return a program with one spline of weights and knots, on the lines from 3 on."""
+    order, count = pick.randint(3, 6), pick.randint(6, 12)
+    reach, unit = pick.choice([(0.02, "G20"), (1.0, "G20"), (40.0, "G21"), (300.0, "G21")])
+    first = pick.choice([f"P{pick.choice([0.5, 2])} ", "P1 ", "", None])
+    points = [
+        f"X{pick.uniform(-reach, reach):.4f} Y{pick.uniform(-reach, reach):.4f}"
+        f" P{pick.choice([1, 1, 0.2, 3, 7.5])}"
+        for _ in range(count)
+    ]
+    head = f"G5.2 L{order}" + (" " if first is None else f" {first}\n")
+    blocks = [f"{head}{points[0]}", *points[1:], "G5.3"]
+    body = "\n".join(blocks)
+    return f"{unit} G90 G94 G17 F100\nG0 X0 Y0 Z0\n{body}\nG1 X0 Y0 Z0\nM2\n"
+
+
+def as_lines(source: str) -> Toolpath:
+    """Return the path of the lines that a GRBL gets for the spline of a program."""
+    from gcxform.plugin.registry import default_registry
+
+    kinds = default_registry().dialects
+    numbers = gx.NumberFormat(mm=4, inch=6)
+    pipeline = gx.Pipeline(kinds["linuxcnc"], kinds["grbl"], (), numbers=numbers)
+    result = pipeline.run(source.encode())
+    assert result.certificate.verified
+    assert any("splines become lines" in each for each in result.certificate.assumed)
+    return gx.read(result.text, "grbl", start=START).path
+
+
+@judged
+def test_splines_of_weights_become_lines_beside_what_linuxcnc_draws():
+    """No point that LinuxCNC draws is far from the lines, and no line is far from its points."""
+    sources = [knotted(random.Random(seed)) for seed in range(DRAWN // 4)]
+    for source, moves in zip(sources, preview.preview(sources), strict=True):
+        assert not isinstance(moves, str), (moves, source)
+        drawn = np.array([[0.0, 0.0], *(p[:2] for _, points in moves[1:-1] for p in points)])
+        lines = as_lines(source).end[1:-1, :2]
+        corners = np.vstack([[[0.0, 0.0]], lines])
+        assert apart(drawn, corners).max() < 0.002 + 2e-4, source
+        sag = np.hypot(*np.diff(drawn, 2, axis=0).T).max()
+        assert apart(lines, drawn).max() < sag + 2e-4, source
+
+
 # --- cutting, and its proof ---
 
 

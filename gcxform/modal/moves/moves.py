@@ -292,10 +292,10 @@ class Moves:
         self.nurbs.refuse_unknown_start(path)
         if len(line) and (self.state.pull or self.bends):
             path = read_splines(path, self.lines, self.modes)
-        if not path.has_arcs:
-            return path
-        arcs = np.flatnonzero(path.is_arc)
-        return resolve_arcs(path, self._arc_words(line[arcs]), self.dialect, self.findings)
+        if path.has_arcs:
+            words = self._arc_words(line[path.is_arc])
+            path = resolve_arcs(path, words, self.dialect, self.findings)
+        return self.nurbs.as_beziers(path)
 
     def _unfinished(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath with feeds as numbers in force, and without centres."""

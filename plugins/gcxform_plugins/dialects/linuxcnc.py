@@ -33,7 +33,7 @@
 | G5.1 | a quadratic one: I J from its start |
 | G5, G5.1 | refused: other planes, axes but X and Y, one of two words, neither X nor Y; in G93 |
 | after G5, G5.1 | no motion code is in force |
-| G5.2, G5.3 | a spline of weights and knots in G17 and G90: copied; its end is known |
+| G5.2, G5.3 | a spline of weights and knots in G17 and G90: copied; lines for other controls |
 | G33 | needs a turning spindle, an axis word and K in every block; F beside it is refused |
 | G33.1 | to the end and back to the start; no rotary words |
 | G38.2 to G38.5 | end at the target at the latest; the axes named then stand nowhere known |
