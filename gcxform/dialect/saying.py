@@ -154,6 +154,8 @@ class Saying:
     @property
     def length_said(self) -> str:
         """The code of the target for a tool length by its value; "" where it takes numbers."""
+        if not self.crosses:
+            return ""
         return self._named(VECTOR) if any(map(self.lengthens, self.source.codes)) else ""
 
     def lengthens(self, what: str) -> bool:

@@ -9,7 +9,8 @@ executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import groupby
+
+import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.emit.spelled_out import inch_first
@@ -42,13 +43,14 @@ def respelled(
         made = [b.rstrip(b"\r\n") for block in blocks[first:stop] for b in block]
         raw = source.lines[line]
         text: str | None = raw
-        said = speller.said(made)
+        speller.met(made)
         stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
         changed = made != whole[first:stop]
         changes[line] = changes.get(line, False) or changed
         if changed or stepped:
             text = translator.spelled(line, [each.decode("latin-1") for each in made])
-            text = translator.replaced(line, said) if text is None and said else text
+            said = speller.said() if text is None else []
+            text = translator.replaced(line, said) if said else text
             text = raw if text is None and not changed else text
         if text != raw and not translator.is_own(line):
             raise _refusal(source, line, "this line would change, and stands in another program")
@@ -58,25 +60,41 @@ def respelled(
             if changes[line]:
                 raise _refusal(source, line, "this line becomes another each time it is executed")
             new[line] = raw
+    new = {line: text for line, text in new.items() if text != source.lines[line]}
     several = any("\n" in text for text in new.values())
-    made_of = _joined(given, new)
+    made_of = _joined(given, new) if new else given
     if not several:
         return made_of
     return translator.renumbered(made_of.decode("latin-1")).encode("latin-1")
 
 
 class _Spelling:
-    """What the speller of a language says to the blocks of its programs, one after the other."""
+    """What the speller of a language says to the blocks of its programs, one after the other.
+
+    It hears of those that were met when it is asked for the last of them, and not before.
+    """
 
     def __init__(self, translator: Translator, blocks: list[bytes]) -> None:
         replaces = type(translator).replaced is not Translator.replaced
         kind = translator.speller if replaces else None
         self.speller = None if kind is None else kind("", inch_first(blocks, False))
+        self.waiting: list[list[bytes]] = []
 
-    def said(self, blocks: list[bytes]) -> list[str]:
-        """Return lines for blocks; nothing where the language has no words for them."""
-        if self.speller is None:
-            return []
+    def met(self, blocks: list[bytes]) -> None:
+        """Take note of the blocks of a line."""
+        if self.speller is not None:
+            self.waiting.append(blocks)
+
+    def said(self) -> list[str]:
+        """Return lines for the last blocks; nothing where the language has no words for them."""
+        found: list[str] = []
+        for blocks in self.waiting:
+            found = self._said(blocks)
+        self.waiting.clear()
+        return found
+
+    def _said(self, blocks: list[bytes]) -> list[str]:
+        assert self.speller is not None
         try:
             return [
                 line for block in blocks for line in self.speller.lines(block.decode("latin-1"))
@@ -88,9 +106,10 @@ class _Spelling:
 
 def _runs(source: Translated) -> Iterator[tuple[int, int, int]]:
     """Yield each execution of a line that has blocks: the line, its first block, the one behind."""
-    for _, group in groupby(range(len(source.visits)), key=lambda k: int(source.visits[k])):
-        blocks = [*group]
-        yield int(source.origin[blocks[0]]), blocks[0], blocks[-1] + 1
+    count = len(source.visits)
+    firsts = np.flatnonzero(np.diff(source.visits, prepend=-1))
+    lines = source.origin[firsts].tolist()
+    yield from zip(lines, firsts.tolist(), [*firsts[1:].tolist(), count], strict=True)
 
 
 def _joined(given: bytes, new: dict[int, str]) -> bytes:

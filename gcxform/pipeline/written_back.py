@@ -73,10 +73,16 @@ class WrittenBack:
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
         blocks = [line for part in self.parts for line in part.text.splitlines()]
-        check_respelled(written, blocks, self.plan.target, reading)
+        known = self.source if self._is_as_read(folded, reading) else None
+        check_respelled(written, blocks, self.plan.target, reading, known)
         if findings.output_line:
             of = [line for part in self.parts for line in part.source.tolist()]
             findings.output_line = self.source.line_of(of[findings.output_line - 1] + 1)
+
+    def _is_as_read(self, folded: Folded, reading: Reading) -> bool:
+        """Whether a program is the one that was read, byte for byte, and by the same machine."""
+        same = replace(self.plan.machine_reading, units=reading.units) == reading
+        return same and b"".join(self.given.windows()) == folded.text
 
 
 @dataclass

@@ -4,7 +4,7 @@ Claimed, with e_1 ... e_n the events of the source and f_1 ... f_m those read fr
 lengths in mm, without those that are folded or taken over by a pass: n = m, and for every j what
 e_j and f_j do and their numbers are the same, but for those that set a zero from where the axes
 stand (`gcxform/proof/zeros.py`), f_j is in a block of the line of e_j, and the written
-row before which f_j stands is the one for the row before which e_j stands (`Trace.stands_before`);
+row before which f_j stands is the one for the row before which e_j stands (`Trace.stand_before`);
 rows no longer together than the budget may lie between.
 """
 
@@ -134,11 +134,16 @@ class EventProof:
         self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
     ) -> Iterator[Wrong]:
         """Yield where events are not the same, in order, at the same place between the moves."""
-        for before, after in zip(old, new, strict=False):
-            line = trace.line_of(after.line)
+        both = min(len(old), len(new))
+        lines = trace.lines_of(np.array([event.line for event in new[:both]], np.int64))
+        written = np.array([event.row for event in new[:both]], np.int64)
+        rows = np.array([event.row for event in old[:both]], np.int64)
+        stands = trace.stand_before(written, rows, budget)
+        pairs = zip(old, new, lines.tolist(), stands.tolist(), strict=False)
+        for before, after, line, stays in pairs:
             same = (before.what, before.line) == (after.what, line)
-            same &= self._values(before) == self._values(after)
-            if not same or not trace.stands_before(after.row, before.row, budget):
+            same &= before.values == after.values or self._values(before) == self._values(after)
+            if not same or not stays:
                 message = f"{before.what} of the source became {after.what}, or moved"
                 yield Wrong(message, before.line, after.line)
         if len(old) != len(new):

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from gcxform.deviations.runs import Runs, runs_of
-from gcxform.system.arrays import Ints
+from gcxform.system.arrays import Flags, Ints
 from gcxform.toolpath.path import Toolpath
 from gcxform.toolpath.travel import ways
 
@@ -76,21 +76,26 @@ class Trace:
         inside = (index >= 0) & (index < len(self.source))
         return np.where(inside, self.source[np.where(inside, index, 0)], 0)
 
-    def stands_before(self, written_row: int, row: int, short: float) -> bool:
-        """Whether what stands before a written move stands before that row of the input.
+    def stand_before(self, written_rows: Ints, rows: Ints, short: float) -> Flags:
+        """Whether what stands before written moves stands before those rows of the input.
 
         Rows no longer than `short` (mm) together may have been left out on either side of it.
+        All are of shape (n,).
         """
-        owner = self.written_owner
-        earlier = written_row == 0 or self._ends_before(written_row - 1, row, short)
-        later = written_row >= len(owner) or int(owner[written_row]) >= row
-        return earlier and later
+        if not len(self.written_owner):
+            return np.ones(len(rows), np.bool_)
+        last = len(self.written_owner) - 1
+        later = self.written_owner[np.minimum(written_rows, last)] >= rows
+        later |= written_rows > last
+        earlier = self.through[np.maximum(written_rows - 1, 0)] < rows
+        earlier |= written_rows == 0
+        for at in np.flatnonzero(later & ~earlier):
+            earlier[at] = self._ends_before(int(written_rows[at]) - 1, int(rows[at]), short)
+        return earlier & later
 
     def _ends_before(self, written_row: int, row: int, short: float) -> bool:
-        """Whether a written move stands for nothing from a row on, or for too little to matter."""
+        """Whether a written move stands for too little from a row on to matter."""
         through = int(self.through[written_row])
-        if through < row:
-            return True
         rest = slice(row, through + 1)
         if int(self.written_owner[written_row]) >= row or self.before.is_arc[rest].any():
             return False

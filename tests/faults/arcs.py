@@ -85,8 +85,8 @@ MUTATIONS = (
     Mutation(
         "runs: events may stand inside",
         "gcxform/proof/trace.py",
-        "through = int(self.through[written_row])",
-        "through = int(self.written_owner[written_row])",
+        "self.through[np.maximum(written_rows - 1, 0)] < rows",
+        "self.written_owner[np.maximum(written_rows - 1, 0)] < rows",
         ARCS,
     ),
     Mutation(

@@ -40,8 +40,8 @@ MUTATIONS = (
     ),
     _verifier(
         "the place of events is ignored",
-        "or not trace.stands_before(after.row, before.row, budget)",
-        "",
+        "if not same or not stays:",
+        "if not same:",
         "gcxform/proof/events.py",
     ),
     _verifier("missing moves are ignored", "self._missing(trace, runs)\n        if not", "if not"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
-from copy import copy
+from operator import attrgetter
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.lines import Lines
@@ -34,6 +34,8 @@ STATE = (
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
     *("selected", "by_cycle", "plane", "places"),
 )
+BEGUN = STATE.index("begun")
+state_of = attrgetter(*STATE)
 CHANGING = frozenset((dict, list, set))
 """The types of what is changed in its place: as it was it is known by a copy alone."""
 
@@ -57,16 +59,15 @@ class Programs(Runs):
             return super().blocks(items)
         if self.rest_kept:
             return self._kept(items, self.rest_kept)
-        before = {name: getattr(self, name) for name in STATE}
-        before |= {name: copy(value) for name, value in before.items() if type(value) in CHANGING}
+        before = [each.copy() if type(each) in CHANGING else each for each in state_of(self)]
         try:
             self._check_beside(items)
             return [*super().blocks(items)]
         except gx.InputError as error:
             (found, *_) = error.diagnostics
-            if found.code not in KEEPABLE or not before["begun"]:
+            if found.code not in KEEPABLE or not before[BEGUN]:
                 raise
-            vars(self).update(before)
+            vars(self).update(zip(STATE, before, strict=True))
             text = code(self.lines[self.line])
             if DECIDES.search(text) and "PGM" not in text.upper():
                 self._keep_rest(found.message)
