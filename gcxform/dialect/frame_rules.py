@@ -57,6 +57,8 @@ class ToolRule:
                            known
     units_spoil_length     a length in force keeps its number when the unit changes, so that it is
                            another one
+    t_changes              T by itself changes the tool: programs of the control run, and another
+                           offset of the tool is in force, along any axis
     """
 
     in_table: bool = False
@@ -67,6 +69,7 @@ class ToolRule:
     g49_takes_axes: bool = False
     length_may_move: bool = False
     units_spoil_length: bool = False
+    t_changes: bool = False
 
 
 @dataclass(frozen=True, slots=True)

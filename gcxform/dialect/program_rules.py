@@ -90,8 +90,8 @@ class BlockRule:
     m_first           M codes that may move axes do so before the motion of their block, for certain
     m_order_chosen    the machine decides when an M code beside a move acts, so that it is assumed
     mill              blocks that only lathes have, such as G50 S or G71 P Q, are refused as such
-    one_command       a block is one command, G or M with its words: a second one is refused, and a
-                      motion code holds for its block alone
+    one_command       a block is one command, G or M with its words, or T where that changes the
+                      tool: a second one is refused, and a motion code holds for its block alone
     spindle_words     codes, and S, beside which a word `$` says which spindle is meant
     """
 
@@ -143,6 +143,7 @@ class FlowRule:
     repeats_keep    variables keep what a call did to them when L calls again; None: not known
     argument_list   "II" if I, J, K may come again; "" where a parameter decides
     kept_codes      codes of the machine file whose blocks are kept as calls
+    m99_returns     a file that ends with M99 is a subprogram by itself, where no language is read
     null_compare    whether null is equal to 0: "distinct", "zero", or "" where that is not known
     """
 
@@ -156,3 +157,4 @@ class FlowRule:
     argument_list: str = ""
     null_compare: str = ""
     kept_codes: frozenset[str] = frozenset()
+    m99_returns: bool = False

@@ -288,6 +288,10 @@ class TemplateWriter:
         if word.address == "O" and not program_number_fits(word, self.target):
             self.draft.refuse(word, "this program number")
         crosses = self.source is not self.target
+        if word.address == "T" and self.source.tool_rule.t_changes != (
+            self.target.tool_rule.t_changes
+        ):
+            self.draft.refuse(word, "T as what changes the tool, or does not")
         pointed = word.address in self.source.axes and self.target.point_rule.required
         pointed &= crosses and not self.source.point_rule.required
         if pointed or (isinstance(word.value, Expression) and crosses):

@@ -19,7 +19,8 @@ SIGNS = {
 
 def is_subprogram(source: Source, dialect: type[Dialect]) -> bool:
     """Whether the program of a file returns to what has called it, and ends nothing."""
-    sign = SIGNS.get(dialect.flow_rule.language)
+    rule = dialect.flow_rule
+    sign = SIGNS.get("macro-b" if rule.m99_returns else rule.language)
     if sign is None or not any(has_sign(sign, each) for each in source.windows()):
         return False
     from gcxform.flow.subprogram_file import only_returns

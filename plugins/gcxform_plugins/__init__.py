@@ -44,6 +44,7 @@ def gcxform_dialects() -> list[gx.Later]:
         "klipper": "controls.printers:Klipper",
         "prusa": "controls.printers:Prusa",
         "rrf": "controls.printers:Rrf",
+        "rrf-cnc": "controls.printers:RrfCnc",
         "smoothieware": "controls.printers:Smoothieware",
     }
     return _later("dialects", places)

@@ -157,6 +157,8 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
     elif act.name in LENGTHS and words.get("H", 0.0) > 0:
         used.lengths.setdefault(f"{words['H']:g}", block.place)
         used.length_alone |= dialect.tool_rule.length_may_move and "Z" not in block.meaning.axes
+    elif act.name == "offset-of-tool":
+        used.lengths.setdefault(f"{words['T']:g}", block.place)
     elif act.name == "home":
         name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
         axes = used.of_home.get(name, "") + (block.meaning.axes or used.axes)

@@ -197,8 +197,21 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
     return state.with_tool(tuple(vector.tolist()), "G43.1")
 
 
+def offset_of_tool(state: FrameState, asked: Asked) -> FrameState:
+    """T by itself: the offset of a tool of the table, which may be along any axis."""
+    number = asked.words["T"]
+    if not number >= 0 or number % 1:
+        raise ActError("GX213", "T is not a number of a tool")
+    tool = asked.reading.tools.get(int(number))
+    vector = (np.nan, np.nan, np.nan) if tool is None else tool.vector
+    state = replace(state, in_spindle=int(number), changes=state.changes + 1)
+    return state.with_tool(vector, f"T{number:g}")
+
+
 def no_length(state: FrameState, asked: Asked) -> FrameState:
-    """G49: no tool length."""
+    """G49: no tool length, and beside it H0 says nothing more."""
+    if asked.words.get("H", 0.0) != 0:
+        raise ActError("GX213", f"{asked.code} takes no H but H0")
     return replace(state, tip="").with_tool(NO_TOOL, "")
 
 

@@ -68,6 +68,7 @@ ACT_ORDER = (
     "length-vector",
     "length-add",
     "length-number",
+    "offset-of-tool",
     "no-length",
     "vectors",
     "no-vectors",
@@ -106,7 +107,7 @@ PRESETS = frozenset({"preset", "set-work", "store-home"})
 LENGTHENED = frozenset(
     {
         *("length", "length-negative", "length-vector", "length-add", "length-number", "no-length"),
-        *("vectors", "no-vectors"),
+        *("offset-of-tool", "vectors", "no-vectors"),
     }
 )
 """What puts another tool length in force, or none."""

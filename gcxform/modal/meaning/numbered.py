@@ -1,4 +1,4 @@
-"""Words that say by a number which one is meant: D and H of tools, `$` of spindles."""
+"""Words that say by a number which one is meant: D, H and T of tools, `$` of spindles."""
 
 from __future__ import annotations
 
@@ -51,6 +51,17 @@ def length_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Non
     taken = (("H", meaning.slots.pop("H")),)
     meaning.acts.append(Act("length-number", "H", taken, word.start, word.end - word.start))
     meaning.events.append(EventShape(46, "H", taken))
+
+
+def tool_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+    """Let a T change the tool where it does so by itself; elsewhere it only says which is next."""
+    if not dialect.tool_rule.t_changes or "T" not in meaning.slots:
+        return
+    word = next(word for word in shape.block.words if word.address == "T")
+    taken = (("T", meaning.slots["T"]),)
+    meaning.acts.append(Act("offset-of-tool", "T", taken, word.start, word.end - word.start))
+    meaning.changes_tool = meaning.loses_position = True
+    meaning.lost_by.add(-1)
 
 
 def table_acts(item: Statement, dialect: type[Dialect]) -> Iterator[Act]:

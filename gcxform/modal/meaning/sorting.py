@@ -28,6 +28,7 @@ from gcxform.modal.meaning.numbered import (
     offset_word,
     spindle_number,
     table_acts,
+    tool_number,
 )
 from gcxform.modal.meaning.percent import behind_percent, is_dropped
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
@@ -368,6 +369,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     slots = meaning.slots
     spindle_number(shape, dialect, meaning)
     length_number(shape, dialect, meaning)
+    tool_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))

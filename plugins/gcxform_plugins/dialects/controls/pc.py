@@ -18,6 +18,8 @@ page. What is only recalled is refused, or a setting.
 | more than six offsets | G59 P (post of Mach4): refused | none | none | none |
 | M6, other M codes | run a macro that may move | as Mach3 | as Mach3 | as Mach3 |
 | M98, G65 | refused | refused | M98 calls a file (page): refused | files: refused |
+| M99 | refused | refused | refused | returns to another file (post): a subprogram |
+| G49 H0 | refused | refused | refused | is G49 (post) |
 | comments | `(`; Mach4 also `;`; `(MSG,` shows | `(` | `(` | `;` |
 | G64 | blends | not known: refused | refused | G64 alone |
 """
@@ -168,7 +170,13 @@ class Centroid(Uccnc):
         "G30": v.frame("non-modal", "home", "P"),
         "G64": v.inert("path", act="blend"),
         "G65": v.barrier("non-modal", v.CALL, "ABCDEFHIJKLMPQRSTXYZ"),
+        "G49": v.frame("tool-length", "no-length", "H"),
     }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **Uccnc.m_codes,
+        99: gx.MCode("stop", after=True, ends=True),
+    }
+    flow_rule = gx.FlowRule(m99_returns=True)
     initial: ClassVar[Mapping[str, str]] = {**gx.Dialect.initial, "units": "G20"}
     differs: ClassVar[Mapping[str, str]] = {
         **STEPS,

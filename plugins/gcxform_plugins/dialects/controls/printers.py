@@ -10,6 +10,10 @@
 | small letters | as capitals | as capitals | as capitals | a shell command: refused |
 | other words on a line | refused | `NAME=...`: refused | refused | refused |
 
+RepRapFirmware as a mill, in CNC mode (M453; StringParser.cpp): parentheses are comments, and a
+line that begins with an axis goes on with G0 to G3, which is refused here. T runs tfree, tpre and
+tpost, which may move, and puts the offset of the tool in force (G10 P), along any axis.
+
 Sources: `gcode_move.py`, `gcode_arcs.py`, `firmware_retraction.py` of Klipper, as executed;
 RepRapFirmware 3.5, Prusa-Firmware and Smoothieware, as read; for `marlin2`, whose E is as that of
 Smoothie, the pages of Marlin on M82, M83, G90 and G91. How fine arcs are cut is not known.
@@ -55,6 +59,29 @@ class Rrf(Marlin):
     text_rule = replace(Marlin.text_rule, comments=";")
     block_rule = replace(Marlin.block_rule, words="FIJKLPRSBQ")
     motion_rule = replace(Marlin.motion_rule, extruder="own")
+
+
+class RrfCnc(Rrf):
+    """RepRapFirmware 3, as a mill (M453)."""
+
+    name = "rrf-cnc"
+    kin = "marlin"
+    grammar = ("gcxform_grammars", "rrf_cnc")
+    axes = "XYZ"
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Rrf.codes,
+        **{f"G{n}": v.ISO[f"G{n}"] for n in range(54, 60)},
+        "G92": v.frame("non-modal", "preset", "XYZ"),
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **{n: code for n, code in Rrf.m_codes.items() if code.group not in ("extrusion", "limits")},
+        453: gx.MCode("said"),
+    }
+    text_rule = replace(Rrf.text_rule, comments=";(")
+    block_rule = replace(Rrf.block_rule, words="FIJKLPRSBQT")
+    motion_rule = replace(Rrf.motion_rule, extruder="")
+    offset_rule = replace(Rrf.offset_rule, known_at_start=False)
+    tool_rule = gx.ToolRule(t_changes=True)
 
 
 class Prusa(Marlin):
