@@ -27,13 +27,15 @@ def plate() -> str:
     return f"solid plate\n{''.join(facets)}endsolid plate\n"
 
 
-def sliced(folder: Path, name: str, *words: str) -> subprocess.CompletedProcess[str]:
-    """Slice a plate into a program of a folder; skip where no slicer is installed."""
+def sliced(
+    folder: Path, name: str, *words: str, model: str = ""
+) -> subprocess.CompletedProcess[str]:
+    """Slice a plate, or a model, into a program of a folder; skip where no slicer is installed."""
     slicer = shutil.which("prusa-slicer")
     if slicer is None:
         pytest.skip("prusa-slicer is not installed: no slicer calls gcxform")
-    (folder / "plate.stl").write_text(plate())
-    out = ["--export-gcode", "-o", str(folder / name), *words, str(folder / "plate.stl")]
+    (folder / "model.stl").write_text(model or plate())
+    out = ["--export-gcode", "-o", str(folder / name), *words, str(folder / "model.stl")]
     return subprocess.run([slicer, *out], capture_output=True, text=True, timeout=60, check=False)
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import boat
 import numpy as np
 import pytest
 import stamp_kit
 from cli_kit import call
+from seeds_kit import LONG
 from slicer_kit import printed, sliced
 
 PIPELINE = """format = 1
@@ -82,6 +84,31 @@ def test_the_slicer_calls_a_script(way: str, shop: Path) -> None:
     for corner, fed in zip(sent, was.feeds, strict=True):
         k = int(np.argmin(np.abs(np.array(now.feeds) - fed)))
         assert np.abs(np.array(now.corners[k]) - corner).max() < 2e-3, corner
+
+
+def test_a_boat_sliced_with_post_as_its_script(shop: Path) -> None:
+    """Each corner lies where the machine has to be sent, at the filament that was fed by then.
+
+    Two runs of the slicer differ by some micrometres, so the script keeps what it was given.
+    """
+    keeping = shop / "keeping.sh"
+    keeping.write_text(f'#!/bin/sh\ncp "$1" "{shop}/plain.gcode"\nexec {script_of(shop)} "$1"\n')
+    keeping.chmod(0o755)
+    script = ("--post-process", str(keeping).replace(" ", "\\ ").replace("'", "\\'"))
+    fine = ("--layer-height", "0.1" if LONG else "0.3")
+    done = sliced(shop, "boat.gcode", *fine, *script, model=boat.boat())
+    assert done.returncode == 0, done.stderr
+    before, after = ((shop / name).read_text() for name in ("plain.gcode", "boat.gcode"))
+    assert ("GCXFORM STAMP" in before, "GCXFORM STAMP" in after) == (False, True)
+    was, now = printed(before), printed(after)
+    assert len(was.corners) > 2000
+    assert now.fed == pytest.approx(was.fed, abs=1e-3)
+    sent = np.array(was.corners) / [1 + 1e-3, 1.0]
+    feeds, corners = np.array(now.feeds), np.array(now.corners)
+    near = np.searchsorted(feeds, np.array(was.feeds) - 1e-4)
+    found = [corners[np.minimum(near + k, len(feeds) - 1)] for k in range(4)]
+    off = np.min([np.abs(each - sent).max(axis=1) for each in found], axis=0)
+    assert off.max() < 2e-3
 
 
 def test_a_program_that_was_done_stays(shop: Path) -> None:
