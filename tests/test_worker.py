@@ -22,7 +22,7 @@ from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
 from gcxform.proof.verify import Verifier
-from gcxform.system.worker import DIED, Here, Process, _may_copy, ahead, worker
+from gcxform.system.worker import DIED, Here, Process, Relay, _may_copy, ahead, relay, worker
 from gcxform.testing.cases import check_outcome, outcome
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
@@ -116,6 +116,68 @@ def test_what_nobody_foresaw_keeps_its_trace():
         one.begin()  # it goes on
         with pytest.raises(RuntimeError):
             one.end()
+
+
+@pytest.mark.parametrize("long", [False, True])
+def test_one_works_on_what_another_has_made(long):
+    """Each remembers what it was given, and what was made does not come back in between."""
+    first, second = Adding(), Adding()
+
+    def times(made, factor):
+        total, pid = made
+        return (*second.add(total * factor), pid)
+
+    with relay(first.add, times, long) as both:
+        assert isinstance(both, Relay if long else Here)
+        found = []
+        for number in (1, 2, 3, 4, 5):
+            if both.full:
+                found.append(both.end())
+            both.begin(number, 10)
+        while both.busy:
+            found.append(both.end())
+    assert [total for total, _, _ in found] == [10, 40, 100, 200, 350]
+    assert len({os.getpid(), *(pid for one in found for pid in one[1:])}) == (3 if long else 1)
+
+
+@pytest.mark.parametrize("who", [0, 1])
+@pytest.mark.parametrize("how", ["refuses", "dies"])
+def test_either_of_two_may_fail(who, how):
+    def fail(number, *rest):
+        if number == 2 and how == "dies":
+            os.kill(os.getpid(), signal.SIGKILL)
+        if number == 2:
+            raise InputError.one("GX213", "two")
+        return number
+
+    works = [lambda number, *rest: number, lambda number, *rest: number]
+    works[who] = fail
+    with relay(*works, True) as both:
+        for number in (1, 2, 3):
+            both.begin(number)
+        assert both.end() == 1
+        with pytest.raises((InputError, FileError), match=DIED if how == "dies" else "two"):
+            both.end()
+        assert not both.busy
+        if how == "refuses":
+            both.begin(4)
+            assert both.end() == 4
+
+
+def test_where_the_system_has_no_second_process_all_is_done_here(monkeypatch):
+    done, fork = count(), os.fork
+
+    def second_refused():
+        if next(done):
+            raise BlockingIOError("too many processes")
+        return fork()
+
+    monkeypatch.setattr(os, "fork", second_refused)
+    with relay(lambda number: number + 1, lambda number, by: number * by, True) as both:
+        assert isinstance(both, Here)
+        both.begin(2, 5)
+        assert both.end() == 15
+    assert not [at for at in Path("/proc/self/fd").iterdir() if "memfd" in os.path.realpath(at)]
 
 
 def columns():

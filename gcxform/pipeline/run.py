@@ -6,7 +6,6 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import Any
 
 from gcxform.contract.passes import Pass, resolved
 from gcxform.contract.tip_codes import switches_of
@@ -42,7 +41,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source, lines_in
 from gcxform.system.arrays import Floats
 from gcxform.system.heap import Heap
-from gcxform.system.worker import Worker, ahead, worker
+from gcxform.system.worker import Worker, ahead, relay, worker
 from gcxform.toolpath.path import Toolpath
 from gcxform.values import dataclass
 
@@ -202,8 +201,7 @@ class Run:
         texts = undivided(texts, self.plan)
         read = WindowReader(self.dialect).read_apart
         long = self.source.is_long(size)
-        proved = long and self.verifier is not None
-        with worker(read, long) as reader, worker(self._check, proved) as proof:
+        with worker(read, long) as reader, self._proof(long) as proof:
             windows = ahead(reader, self._counted(texts, out))
             self._write_all(windows, proof, out, progress)
 
@@ -220,10 +218,11 @@ class Run:
         out.lines_in = structure.lines_read
         out.put(*self.text.edit(folded.text, list(folded.lines), True))
 
-    def _check(self, *given: Any) -> Findings:
-        """Check a window that is to be proved: see `Verifier.check`."""
-        assert self.verifier is not None
-        return self.verifier.check(*given)
+    def _proof(self, long: bool) -> Worker[Findings]:
+        """Return who proves windows: one reads what was written, and another compares."""
+        if self.verifier is None:
+            return worker(Findings, False)
+        return relay(self.verifier.read, self.verifier.check, long)
 
     def _counted(self, texts: Iterator[bytes], out: Output) -> Iterator[bytes]:
         """Yield texts; their hash is that of the program if that is what is executed."""
@@ -257,8 +256,8 @@ class Run:
                 if proof.full:
                     self.findings = proof.end()
                 if self.verifier is not None:
-                    given = one.window.lines, emitted.text, emitted.source, emitted.nth
-                    proof.begin(replace(one.read, path=one.meant), *given)
+                    given = one.window.lines, emitted.source, emitted.nth
+                    proof.begin(emitted.text, replace(one.read, path=one.meant), *given)
                 self._hand_on(one.window, emitted, out)
                 progress(len(one.window.text))
                 del apart, one, emitted  # or they would last until the next one is there

@@ -38,7 +38,7 @@ from gcxform.diagnostics import (
 )
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning.tables import PROBES
-from gcxform.modal.reader import WindowReader
+from gcxform.modal.reader import Apart, WindowReader
 from gcxform.modal.state import Reading
 from gcxform.proof.centre_path import CentreProof
 from gcxform.proof.events import EventProof
@@ -79,6 +79,7 @@ class Verifier:
         self.switches = switches
         self.bounded = bounded
         self.context = context
+        self._again = WindowReader(context.target)
         self.reader = WindowReader(context.target)
         self.interpreter = Interpreter(context.target, reading, axes, "output")
         self.undecided = undecided
@@ -101,14 +102,20 @@ class Verifier:
         """What the path may deviate (mm): more once there were blocks in inches, or arcs."""
         return self.limit(self.findings.inch, False, self.findings.arcs)
 
-    def check(
-        self, read: Interpreted, lines: range, text: bytes, source: Ints, nth: Ints
-    ) -> Findings:
-        """Check the text written for a window; return what has been found in the program so far.
+    def read(self, text: bytes) -> Apart:
+        """Read the text written for a window, perhaps in another process than it is checked in."""
+        return self._again.read_apart(text)
 
-        XX        Raises VerificationError.
+    def check(
+        self, apart: Apart, read: Interpreted, lines: range, source: Ints, nth: Ints
+    ) -> Findings:
+        """Check what was written for a window; return what has been found in the program so far.
+
+        `apart` is what `read` has made of its text.
+
+        Raises VerificationError.
         """
-        again = self.reader.read(text)
+        again = self.reader.take_over(apart)
         self.interpreter.undecided = self.undecided.through(
             source, again.first_line, range(self.behind, lines.stop)
         )

@@ -6,9 +6,9 @@ it is given later goes through memory that both can see. Where a process cannot 
 (another system than Linux, other threads, a process of a pool) the work is done here, when its
 result is needed.
 
-While a window is transformed and written, one process reads the next ones and another proves those
-before. Up to `DEPTH` of them wait for each, so that nobody waits because one window takes longer
-than another, and two cores are at work although three processes are. A worker ends with its parent.
+While a window is transformed and written, one process reads the next ones, and two prove those
+before: one reads what was written, the other compares. Up to `DEPTH` windows wait for each, so that
+nobody waits because one takes longer than another. A worker ends with its parent.
 """
 
 from __future__ import annotations
@@ -107,6 +107,17 @@ def worker(work: Work[Result], long: bool) -> Worker[Result]:
         with suppress(OSError):
             return Process(work)
     return Here(work)
+
+
+def relay(first: Work[Any], second: Work[Result], long: bool) -> Worker[Result]:
+    """Return who is to do some work on what another makes of the first thing that is given.
+
+    Each is done by a process of its own if it is long and the system has two.
+    """
+    if long and _may_copy():
+        with suppress(OSError):
+            return Relay(first, second)
+    return Here(lambda item, *rest: second(first(item), *rest))
 
 
 def _may_copy() -> bool:
@@ -216,6 +227,39 @@ class Process(Worker[Result]):
     def _close_shared(self) -> None:
         for place in self.shared:
             os.close(place)
+
+
+class Relay(Worker[Result]):
+    """Two processes: what one makes of a thing goes to the other without coming back here."""
+
+    depth = DEPTH
+
+    def __init__(self, first: Work[Any], second: Work[Result]) -> None:
+        super().__init__()
+        self.first = Process(first)
+        try:
+            self.second = Process(lambda *rest: second(self._handed_on(), *rest))
+        except OSError:
+            self.first.__exit__()
+            raise
+
+    def _handed_on(self) -> Any:
+        """Wait, in the second process, for what the first has made of the next thing."""
+        self.first.begun += 1  # by the one that waits for both
+        return self.first.end()
+
+    def _begin(self, given: tuple[object, ...]) -> None:
+        self.first.begin(given[0])
+        self.second.begin(*given[1:])
+
+    def _end(self) -> Result:
+        self.first.ended += 1  # the second has picked it up before it answers
+        return self.second.end()
+
+    def __exit__(self, *raised: object) -> None:
+        """End both processes."""
+        self.second.__exit__(*raised)
+        self.first.__exit__(*raised)
 
 
 def _serve(

@@ -34,6 +34,17 @@ MUTATIONS = (
         "    except GcxformError as error:\n        wrong.append(error)\n",
         "    except KeyError as error:\n        wrong.append(error)\n",
     ),
+    _worker(
+        "what is read again is not waited for",
+        "        self.first.begun += 1  # by the one that waits for both\n"
+        "        return self.first.end()\n",
+        "        self.first.begun += 1\n        self.first.ended += 1\n        return (1, 1)\n",
+    ),
+    _worker(
+        "one stays behind where there is no second",
+        "            self.first.__exit__()\n",
+        "            pass\n",
+    ),
     _worker("who stands beside threads is copied", "threading.active_count() == 1", "True"),
     _worker(
         "every column has one value throughout",
