@@ -107,3 +107,15 @@ def test_a_full_circle_behind_a_helix_stays_one():
     text += b"G3 X-1.7452 Y48.3339 I24.6399 J-8.3528\nM2\n"
     said = Pipeline(WORDS, DIALECT, (), Reading(START)).run(text).text
     assert b"CP IPA+360 DR+" in said
+
+
+def test_helices_of_rounded_words_lead_to_their_places():
+    """Each ends on a circle that is a little off, in inches by up to 0.0025 mm."""
+    there, back = "X-2.9206 Y-1.8892 {} I-0.0884 J0.0793", "X-2.7439 Y-2.0478 {} I0.0884 J-0.0793"
+    turns = [(there, back)[k % 2].format(f"Z-{k / 100:.2f}") for k in range(30)]
+    head = ("G20 G17 G90 G94", "G0 X-2.7439 Y-2.0478 Z0.2", "G1 Z0.1 F10.")
+    last = "X-2.7135 Y-1.9685 Z-0.31 I-0.0884 J0.0793"
+    text = "\n".join((*head, f"G3 {turns[0]}", *turns[1:], last, "M2\n")).encode()
+    said = Pipeline(WORDS, DIALECT, (), Reading(START)).run(text).text
+    one, two = read(text, WORDS), read(said, DIALECT)
+    assert gx.compare(one, two, 2e-3).same

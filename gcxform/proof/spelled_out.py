@@ -30,7 +30,8 @@ LENGTH = "the length of a tool counts from its change on, and here it should not
 CALLED = "call it by G43 H in the block behind the change; or say in the machine file that it is 0"
 NEAR = 1e-5  # mm: far below what rounding does
 ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
-ROUND = 2e-4  # mm: so far words with four decimals may be off their circle
+ROUND = 4e-4  # mm: so far a centre with the decimals of the control may lead beside an end
+SHORT = 8  # times, of a chord that is not shorter than an eighth of the radius
 SAME = ("kind", "feed_mode", "form", "side", "lost")
 ENDS = ("M2", "M30")
 COUNTS = ("tool-length", "frame")
@@ -91,7 +92,8 @@ def _differences(
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
-    yield from _first(~_same(a.centre, b.centre, near[:, None]).all(axis=1), "a centre")
+    beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
+    yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
     yield from _first(counts, "a work offset, or a length")
@@ -163,11 +165,33 @@ def _slack(path: Toolpath) -> Floats:
     A round of them starts and ends as far from its centre; what is rounded in words is not. Words
     behind it leave axes where they are, so it stays so for the rows that follow.
     """
-    sizes = [np.hypot(*(at[:, :2] - path.centre[:, :2]).T) for at in (path.start, path.end)]
+    sizes = np.hypot(*(path.start[:, :2] - path.centre[:, :2]).T)
+    off = _off(path)
+    slack = sizes * ANGLE + np.where(off > NEAR, ROUND, off)
+    return np.where(_wound(path), np.nan_to_num(slack), 0.0)
+
+
+def _wound(path: Toolpath) -> Any:
+    """Return which rows are helices, or several turns (n,)."""
     helix = np.nan_to_num(path.end[:, 2] - path.start[:, 2]) != 0
-    helix |= path.sweep > 2 * np.pi
-    slack = sizes[0] * ANGLE + np.minimum(np.abs(sizes[0] - sizes[1]), ROUND)
-    return np.where(helix, np.nan_to_num(slack), 0.0)
+    return helix | (path.sweep > 2 * np.pi)
+
+
+def _way(path: Toolpath) -> Any:
+    """Return how many times as far as an end is off its circle the centre may be moved (n,).
+
+    Along the chord of half a turn or less that moves no place of the arc further than its end.
+    """
+    return np.where(path.sweep <= np.pi + ANGLE, SHORT, 1)
+
+
+def _off(path: Toolpath) -> Floats:
+    """Return by how much the end of a helix is off the circle about its centre (n,) mm.
+
+    The centre may be said as far beside, where the circle then goes through both ends.
+    """
+    sizes = [np.hypot(*(at[:, :2] - path.centre[:, :2]).T) for at in (path.start, path.end)]
+    return np.where(_wound(path), np.nan_to_num(np.abs(sizes[0] - sizes[1])), 0.0)
 
 
 def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values]]:

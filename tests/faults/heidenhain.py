@@ -29,12 +29,28 @@ REFUSED = "tests/test_heidenhain_refusals.py::test_it_is_refused_by_name"
 TARGET = "tests/test_klartext_target.py"
 PLANES = f"{TARGET}::test_arcs_of_other_planes_are_circles_about_a_centre_there"
 
+HELIX = "plugins/gcxform_plugins/dialects/heidenhain/helices.py"
+HELICES = "tests/test_klartext_spelled.py::test_helices_of_rounded_words_lead_to_their_places"
 APPROACH = "plugins/gcxform_plugins/dialects/heidenhain/approach.py"
 ONTO = "tests/test_klartext_approach.py"
 
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: a helix begins where the words of the one before end",
+        LINES,
+        "float(self.place[axis]) + self.rounded.get(axis, 0.0)",
+        "float(self.place[axis])",
+        HELICES,
+    ),
+    Mutation(
+        "klartext: a helix keeps a centre that its end is not on a circle about",
+        HELIX,
+        "    if not chord:\n",
+        "    if True:\n",
+        HELICES,
+    ),
     Mutation(
         "klartext: places are gone to from any height",
         CYCLES,

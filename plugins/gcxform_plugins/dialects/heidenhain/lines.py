@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from decimal import Decimal
-from math import atan2, degrees
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
 COMMENT = re.compile(r"\(([^()]*)\)")
@@ -26,23 +26,22 @@ TIP = (128, 129)
 BEFORE = frozenset((3, 4, 7, 8))
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
+HALF = 180.001  # degrees: words of half a turn are rounded
 SIDES = {"G40": " R0", "G41": " RL", "G42": " RR"}
-TURN = 360.0
-LEAST = 1e-4  # degrees
 
 
 class Lines(gx.Speller):
     """Writes blocks as lines of Klartext.
 
     place   where the axes stand, in numbers of the program; an axis that is not here is lost
-    rounded axes that are where a helix ends, which is said by an angle
+    rounded by how much axes stand beside their words: a helix is said by an angle
     steps   G91 is in force;  tool: that of the last T word
     side    that of the last line;  waits: what was said since, for the next line in X and Y
     """
 
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(re.sub(r"[^A-Z0-9_]", "", name.upper())[:16] or "A", inch)
-        self.rounded: set[str] = set()
+        self.rounded: dict[str, float] = {}
         self.unit = "INCH" if inch else "MM"
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
@@ -215,12 +214,12 @@ class Lines(gx.Speller):
                 words += f" {axis}{_signed(self.place[axis] + value)}"
             else:
                 words += _words({axis: value}, "I" if self.steps else "")
-        self.rounded -= ends.keys()
         self._stand(ends)
         return words
 
     def _stand(self, ends: dict[str, Decimal]) -> None:
         for axis, value in ends.items():
+            self.rounded.pop(axis, None)
             if not self.steps:
                 self.place[axis] = value
             elif axis in self.place:
@@ -246,16 +245,37 @@ class Lines(gx.Speller):
             return
         by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
         pole = {axis: self.place[axis] + by[axis] for axis in "XY"}
-        yield f"CC{_words(pole)}"
         if set(ends) <= {"X", "Y"} and turns == 1 and not (self.rounded and self._whole(ends)):
+            yield f"CC{_words(pole)}"
             yield f"C{self._line(ends)}{sense}{feed}"
             return
-        angle = self._angle(ends, pole, turns)
-        rest = {axis: value for axis, value in ends.items() if axis not in "XY"}
-        words = _words(rest, "I" if self.steps else "")
-        self._stand(ends)
-        self.rounded |= {"X", "Y"}
-        yield f"CP IPA{_signed(angle)}{words}{sense}{feed}"
+        yield from self._helix(ends, pole, turns, f"{sense}{feed}")
+
+    def _helix(
+        self, ends: dict[str, Decimal], pole: dict[str, Decimal], turns: int, how: str
+    ) -> Iterator[str]:
+        """Yield CC and CP, whose circle goes through the words of its end."""
+        whole, start = self._whole(ends), self._stands()
+        words = _words({a: v for a, v in ends.items() if a not in "XY"}, "I" if self.steps else "")
+        self._stand({axis: ends.get(axis, self._still(axis)) for axis in (*"XY", *ends)})
+        end = start if whole else self._stands()
+        centre, left = (pole["X"], pole["Y"]), self.motion == "G3"
+        short = abs(turned(start, end, centre, left, turns)) <= HALF
+        centre = centred(start, end, centre, self.inch, short)
+        angle = turned(start, end, centre, left, turns)
+        there = reached(start, centre, angle)
+        self.rounded |= {a: v - float(self.place[a]) for a, v in zip("XY", there, strict=True)}
+        yield f"CC{_words(dict(zip('XY', centre, strict=True)))}"
+        yield f"CP IPA{_signed(angle)}{words}{how}"
+
+    def _stands(self) -> Point:
+        """Return where X and Y really stand."""
+        x, y = (float(self.place[axis]) + self.rounded.get(axis, 0.0) for axis in "XY")
+        return x, y
+
+    def _still(self, axis: str) -> Decimal:
+        """Return the word of an axis that goes nowhere."""
+        return Decimal(0) if self.steps else self.place[axis]
 
     def _aside(self, ends: dict[str, Decimal], values: dict[str, str], rest: str) -> Iterator[str]:
         """Yield CC and C of an arc out of XY. Raises UnspeakableError."""
@@ -265,30 +285,18 @@ class Lines(gx.Speller):
         start = {axis: self.place[axis] for axis in axes}
         step = start if self.steps else dict.fromkeys(axes, Decimal(0))
         there = {a: ends[a] + step[a] if a in ends else start[a] for a in axes}
-        if there == start and self.rounded & {*axes}:
+        if there == start and not self.rounded.keys().isdisjoint(axes):
             raise gx.UnspeakableError("a whole turn from where a helix ends, out of XY")
         pole = {a: start[a] + Decimal(values.pop(CENTRES[a], "0")) for a in axes}
         self.place |= there
-        self.rounded -= {*axes}
+        for axis in axes:
+            self.rounded.pop(axis, None)
         yield f"CC{_words(pole)}"
         yield f"C{_words(there)}{rest}"
 
     def _whole(self, ends: dict[str, Decimal]) -> bool:
         """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
-        return all(d == (0 if self.steps else self.place[a]) for a, d in ends.items() if a in "XY")
-
-    def _angle(self, ends: dict[str, Decimal], pole: dict[str, Decimal], turns: int) -> Decimal:
-        """Return the angle of a helix, with its sign."""
-        begin = self._polar_angle(self.place, pole)
-        added = {a: ends.get(a, Decimal(0)) + self.place[a] for a in "XY"}
-        target = added if self.steps else {**self.place, **ends}
-        turn = (self._polar_angle(target, pole) - begin) * (1 if self.motion == "G3" else -1) % TURN
-        turn = turn if LEAST < turn < TURN - LEAST else TURN
-        whole = Decimal(f"{turn + TURN * (turns - 1):.4f}")
-        return whole if self.motion == "G3" else -whole
-
-    def _polar_angle(self, place: dict[str, Decimal], pole: dict[str, Decimal]) -> float:
-        return degrees(atan2(place["Y"] - pole["Y"], place["X"] - pole["X"]))
+        return all(value == self._still(a) for a, value in ends.items() if a in "XY")
 
     def _shifted(self, ends: dict[str, Decimal]) -> Iterator[str]:
         yield "CYCL DEF 7.0 DATUM SHIFT"
