@@ -31,12 +31,42 @@ PLANES = f"{TARGET}::test_arcs_of_other_planes_are_circles_about_a_centre_there"
 
 HELIX = "plugins/gcxform_plugins/dialects/heidenhain/helices.py"
 HELICES = "tests/test_klartext_spelled.py::test_helices_of_rounded_words_lead_to_their_places"
+DRILLING = "plugins/gcxform_plugins/dialects/heidenhain/drilling.py"
+DRILLED = "tests/test_klartext_drilled.py"
 APPROACH = "plugins/gcxform_plugins/dialects/heidenhain/approach.py"
 ONTO = "tests/test_klartext_approach.py"
 
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: a feed behind a cycle is not said again",
+        DRILLING,
+        "elif self.owed and CUTS.match(bare):",
+        "elif False:",
+        f"{DRILLED}::test_holes_are_cycle_200_called_by_m99",
+    ),
+    Mutation(
+        "klartext: strokes of a deep hole are holes of their own",
+        DRILLING,
+        "return hole if hole and hole.feed and not behind else None",
+        "return hole if hole and hole.feed else None",
+        f"{DRILLED}::test_other_strokes_stay_moves",
+    ),
+    Mutation(
+        "klartext: a hole leaves to its second clearance over the set-up clearance",
+        DRILLING,
+        "values = *levels, surface, back - surface, Decimal(wait)",
+        "values = *levels, surface, back - top, Decimal(wait)",
+        f"{DRILLED}::test_what_is_written_makes_the_moves_of_the_words",
+    ),
+    Mutation(
+        "klartext: a cycle is written beside the contour",
+        DRILLING,
+        "if self.beside or (",
+        "if (",
+        f"{DRILLED}::test_other_strokes_stay_moves",
+    ),
     Mutation(
         "klartext: a helix begins where the words of the one before end",
         LINES,

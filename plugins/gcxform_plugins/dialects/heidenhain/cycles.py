@@ -292,7 +292,8 @@ class Cycles(Parameters):
         if clear < 0 or 0 < high < clear:
             raise self.refusal("GX215", f"{name} with Q204 below Q200", item, ALONE)
         up = exact(surface + clear)
-        blocks = [f"G0 Z{up}", *self._stroke(surface + depth, feed, told[211])]
+        down = [] if self.place.get("Z") == up else [f"G0 Z{up}"]
+        blocks = [*down, *self._stroke(surface + depth, feed, told[211])]
         if 208 in hole.needs:
             blocks.append(f"Z{up}{self.feed_word(exact(told[208] or feed))}")
         return self._out(blocks, exact(surface + high) if high else up)

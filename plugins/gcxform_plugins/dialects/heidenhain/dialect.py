@@ -54,6 +54,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycle 247 | preset 0, before the first move; others are refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycle 200 | in one stroke; the feed behind a cycle must be programmed | [K] |
+| holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |
 | cycles 201, 203, 240, 220, 221 | as `holes.py` says; several rows, Q301=0: refused | 640, p. 162 |
 | PATTERN DEF POS, CYCL CALL PAT FMAX | the places in their order; from Q203 + Q204 only | 640 |
 | other patterns, CYCL CALL POS, PAT with F | refused | |

@@ -7,10 +7,11 @@ read again, and has to be the program that was written: so nothing here needs to
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.drilling import Drilling
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
@@ -59,9 +60,14 @@ class Lines(gx.Speller):
         """Return the last line."""
         return [f"END PGM {self.name} {self.unit}"]
 
+    def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
+        """Return lines with cycles for the moves of holes; what they are in inches is not read."""
+        return lines if self.inch else Drilling(lines).gathered()
+
     def numbered(self, lines: list[str]) -> list[str]:
-        """Return lines with their block numbers."""
-        return [f"{number} {line}" for number, line in enumerate(lines)]
+        """Return lines with their block numbers; those of a cycle's parameters have none."""
+        count = iter(range(len(lines)))
+        return [line if line[0] == " " else f"{next(count)} {line}" for line in lines]
 
     def lose(self) -> None:
         """Forget where the axes stand."""
