@@ -54,6 +54,10 @@ RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
 SETTINGS = {"cycle-without-place": "drills"}
 """Setting 28 as a Haas is delivered."""
+INCREMENT = {"fanuc": "IS-B"}
+"""The steps to which a control rounds what it computes: of most machines those of 0.001 mm."""
+SLASHES = "execute"
+"""The switch for blocks with a slash is off."""
 DROPPED = ("M31", "M33")
 """What has no equal elsewhere and nobody misses: a Haas starts and stops its chip conveyor."""
 
@@ -85,6 +89,15 @@ def into(job: Job, target: str) -> Pipeline:
 
 def asked_for(made: Pipeline) -> Pipeline:
     """Return a pipeline with what its own control was never asked for, as its user knows it."""
+    reading = made.reading
+    made = replace(
+        made,
+        reading=replace(
+            reading,
+            increment=reading.increment or INCREMENT.get(made.source.name),
+            block_delete=reading.block_delete or SLASHES,
+        ),
+    )
     machine = made.machine
     if machine is None:
         return made

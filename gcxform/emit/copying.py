@@ -176,12 +176,11 @@ class Copying:
             raise InputError.one("GX506", message, where, put_before("offsets"))
 
     def _skipped(self) -> None:
-        """Copy the blocks that the control skips; another control might not skip them."""
-        skipped = self.task.window.shape[: len(self.task.shape)] != self.task.shape
-        if skipped.any() and self.task.manner.crossing:
-            where = self.task.location(int(np.argmax(skipped)))
-            message = "a block that is skipped cannot be taken into another dialect"
-            raise InputError.one("GX501", message, where, leave_out_block())
+        """Copy the blocks that the control skips; another control, which might not, gets none."""
+        skipped = self.task.skipped
+        if self.task.manner.crossing:
+            self.lines &= ~skipped
+            return
         self._refuse_switches(skipped)
         self.lines |= skipped
 

@@ -28,6 +28,7 @@ from gcxform.emit.render import interleave
 from gcxform.emit.stated import stated_by
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
+from gcxform.emit.zeros_said import refuse_other_zeros
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import defines
 from gcxform.modal.meaning.meaning import Meaning
@@ -134,9 +135,11 @@ class _Job:
         self._refuse_lost()
         self._refuse_behind_end()
         self._refuse_dwells()
+        refuse_other_zeros(self.task)
         centre = Centres(self.task, self.stated.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
         empty &= self.pieces.event < 0
+        empty |= self.task.skipped[self.pieces.line]
         chosen = np.flatnonzero(~copied[self.pieces.line] & ~empty)
         self._refuse_lost_times(chosen)
         columns = self.stated, self.positions, self.taps, centre, self.presets

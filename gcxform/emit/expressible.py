@@ -301,8 +301,10 @@ def comment_for(source: type[Dialect], target: type[Dialect], text: str) -> str:
     return comment_in(target, text)
 
 
-def slash_of(shape: Shape) -> bytes:
-    """Return the slash with which the blocks of a shape may be skipped, if they have one."""
+def slash_of(shape: Shape, manner: Manner) -> bytes:
+    """Return the slash with which the blocks of a shape may be skipped, if they have one there."""
+    if not manner.slashes:
+        return b""
     marks = [i for i in shape.block.items if isinstance(i, Mark) and i.kind == "block_delete"]
     return "".join(shape.block.text[mark.start : mark.end] for mark in marks).encode("latin-1")
 

@@ -59,6 +59,15 @@ class Manner:
         """Whether the program changes its dialect."""
         return self.source is not self.target
 
+    @property
+    def slashes(self) -> bool:
+        """Whether a slash says in the target what it says in the source.
+
+        Where it does not, blocks that have one are executed or skipped, as is known by now.
+        """
+        one, other = self.source.program_rule, self.target.program_rule
+        return one.block_delete == other.block_delete
+
     def decimals_of(self, address: str, inch: bool) -> int:
         """Return the decimals of an address."""
         if address in self.decimals:
@@ -136,6 +145,11 @@ class Task:
     def shape(self) -> Ints:
         """Shapes of the lines that the control executes."""
         return self.read.shape
+
+    @property
+    def skipped(self) -> Flags:
+        """The lines (live,) that the control skips, because of their slash."""
+        return np.asarray(self.window.shape[: len(self.shape)] != self.shape)
 
     def counted_from_axes(self) -> list[int]:
         """Return the lines that set coordinates from where the axes stand.

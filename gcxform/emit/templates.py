@@ -200,8 +200,8 @@ class TemplateWriter:
 
     def _mark(self, item: Mark, lead: bytes) -> None:
         if item.kind == "block_delete":
-            if self.source.program_rule.block_delete != self.target.program_rule.block_delete:
-                self._check_same(item, "a block with a slash in the same way")
+            if not self.manner.slashes:
+                return
         elif is_output(item):
             self._check_same(item, "a block that sends something out")
         elif item.kind == "block_end":

@@ -202,7 +202,9 @@ class Writing:
         """Return the block of what a canned cycle does between its moves, or one that is given."""
         event, target = self.pieces.events[int(self.pieces.event[piece])], self.task.manner.target
         line = int(self.pieces.line[piece])
-        slash = slash_of(self.task.table.shapes.shapes[int(self.task.shape[line])])
+        slash = slash_of(
+            self.task.table.shapes.shapes[int(self.task.shape[line])], self.task.manner
+        )
         if isinstance(event, Given):
             return (Literal(slash + event.text.encode()),)
         text = event_text(event, target, self.style.gap or b"")

@@ -198,7 +198,7 @@ class Books:
         self.context = context
         self.switches = switches
         self.crossing = context.source is not context.target
-        self.held, self.behind, self.live = Tally(), Tally(), Tally()
+        self.held, self.behind, self.live, self.skipped = Tally(), Tally(), Tally(), Tally()
         self.set_aside = self.done = self.inner = self.given = 0
         self.assigned: list[tuple[Key, float]] = []
         self.text_behind = sha256()
@@ -209,6 +209,8 @@ class Books:
         self.held.add(table, window.shape)
         self.live.add(table, window.shape[: read.live])
         self.behind.add(table, window.shape[read.live :])
+        live = window.shape[: read.live]
+        self.skipped.add(table, live[live != read.shape])
         if self.crossing:
             self.set_aside += sum(not _lasts(each.key, self.context) for each in read.assigned)
         self.text_behind.update(behind_end(window, read.live))
@@ -279,6 +281,7 @@ class Books:
             executed.explain(account, source)
         if self.crossing:
             account.rule("behind the end of the program", -self.behind.total)
+            account.rule("skipped because of a slash", -self.skipped.total)
             account.rule_of(f"no parameter of {target}", "assignments", -self.set_aside)
             if not self.context.target.program_rule.has_program_number:
                 named = -self.live.total

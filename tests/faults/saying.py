@@ -9,7 +9,44 @@ LEFT = "tests/test_left_out_across.py::"
 LENGTHS = "tests/test_lengths_across.py::"
 HERE = "tests/test_said_otherwise.py"
 
+ACROSS = "tests/test_corpus.py::test_case"
+
 MUTATIONS = (
+    Mutation(
+        "saying: a slash is kept that another control asks a switch for",
+        "gcxform/emit/manner.py",
+        "return one.block_delete == other.block_delete",
+        "return True",
+        ACROSS,
+    ),
+    Mutation(
+        "saying: blocks that are skipped are written for another control",
+        "gcxform/emit/copying.py",
+        "self.lines &= ~skipped",
+        "self.lines |= skipped",
+        ACROSS,
+    ),
+    Mutation(
+        "saying: G10 L20 of another control is as good",
+        "gcxform/emit/zeros_said.py",
+        "if kind == 20 and one.g10_l20 != other.g10_l20:",
+        "if kind == 20 and False:",
+        ACROSS,
+    ),
+    Mutation(
+        "saying: P0 of G10 is the same everywhere",
+        "gcxform/emit/zeros_said.py",
+        "if kind == 2 and not number > 0 and one.g10_p0 != other.g10_p0:",
+        "if kind == 2 and number > 9:",
+        ACROSS,
+    ),
+    Mutation(
+        "saying: R of G10 turns on every control",
+        "gcxform/emit/zeros_said.py",
+        'if kind == 2 and "R" in slots and one.g10_rotates != other.g10_rotates:',
+        "if kind > 20:",
+        ACROSS,
+    ),
     Mutation(
         "saying: an exact path stands for an exact stop",
         SAYING,

@@ -85,9 +85,6 @@ def set_work(state: FrameState, asked: Asked) -> FrameState:
     if kind not in (2, 20):
         raise ActError("GX213", "this G10 writes something into the control that is not followed")
     rule = asked.dialect.offset_rule
-    if asked.reading.crosses and (kind == 20 or asked.words.get("P") == 0):
-        message = f"G10 L{kind:g} {'with P0 ' * (kind == 2)}sets other offsets on other controls"
-        raise ActError("GX213", message, "set the work offset by its number, with L2")
     turns = kind == 2 and rule.g10_rotates
     for address in asked.written:
         if address not in asked.axes and address not in ("LPR" if turns else "LP"):
