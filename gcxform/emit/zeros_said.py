@@ -43,5 +43,6 @@ def _others(task: Task, line: int, act: Act) -> Iterator[str]:
         yield f"{act.code} L20"
     if kind == 2 and not number > 0 and one.g10_p0 != other.g10_p0:
         yield f"{act.code} L2 with P0"
-    if kind == 2 and "R" in slots and one.g10_rotates != other.g10_rotates:
+    takes = "R" in getattr(task.manner.target.codes.get(act.code), "takes", "")
+    if kind == 2 and takes and "R" in slots and one.g10_rotates != other.g10_rotates:
         yield f"{act.code} L2 with R"

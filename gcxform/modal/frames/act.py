@@ -34,6 +34,7 @@ class Asked:
     axes      the axes it names, with their words in mm or degrees, X as a radius
     position  (axes,) where the axes stand before the block
     ends      what the machine file says of a call that is kept
+    lost      axes, as bits, that something has taken where they are not known
     """
 
     code: str
@@ -47,6 +48,7 @@ class Asked:
     dialect: type[Dialect]
     reading: Reading
     ends: str = ""
+    lost: int = 0
 
     def column(self, state: FrameState, axis: str) -> int:
         """Return the index of an axis."""

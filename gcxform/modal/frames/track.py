@@ -213,6 +213,7 @@ class Track:
             self.dialect,
             self.lines.reading,
             next((call.ends for call in calls if call.line == line), "") if calls else "",
+            lost=self.state.lost_once,
         )
 
     def _said(self, act: Act, line: int) -> tuple[dict[str, float], ...]:

@@ -162,6 +162,8 @@ def _set_zero_here(state: FrameState, asked: Asked, name: str) -> FrameState:
         local[:2] = about.T @ local[:2]
     for axis, value in asked.axes.items():
         k = asked.column(state, axis)
+        if np.isnan(here[k]) and asked.reading.crosses:
+            _refuse_tied(state, asked, axis)
         local[k] = inner[k] + value
     if turned:
         local[:2] = about @ local[:2]
@@ -230,9 +232,14 @@ def preset(state: FrameState, asked: Asked) -> FrameState:
 
 
 def _refuse_tied(state: FrameState, asked: Asked, axis: str) -> None:
-    """Refuse G92 of an axis that is nowhere known where more than its own zero hangs on that."""
+    """Refuse to count from an axis that is nowhere known where more than a zero hangs on that.
+
+    Where a code has moved it, it stands elsewhere on another control; where it stood before the
+    first block it still stands.
+    """
     turned = state.rotation.get(state.work, 0.0) and axis in "XY"
-    if turned or asked.reading.crosses or state.following:
+    moved = asked.reading.crosses and asked.lost >> asked.column(state, axis) & 1
+    if turned or moved or state.following:
         raise ActError(
             "GX213",
             f"{asked.code} counts {axis} from where it stands, and that is not known",
