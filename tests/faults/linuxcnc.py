@@ -112,8 +112,8 @@ MUTATIONS = (
     _of(
         "G92 from nowhere in turned coordinates",
         "gcxform/modal/frames/work_offsets.py",
-        "if turned or asked.reading.crosses",
-        "if asked.reading.crosses",
+        "if turned or moved or state.following",
+        "if moved or state.following",
         "dialects/linuxcnc/preset-from-nowhere-turned",
     ),
     _of(
