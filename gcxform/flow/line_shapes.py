@@ -45,8 +45,9 @@ class Shape:
 
     def items(self, numbers: Sequence[str]) -> tuple[Item, ...]:
         """Return the items of a line with these numbers."""
-        bare = [number.replace(" ", "").replace("\t", "") for number in numbers]
-        return tuple([part.item(bare) for part in self.parts])
+        if any([" " in number or "\t" in number for number in numbers]):
+            numbers = [number.replace(" ", "").replace("\t", "") for number in numbers]
+        return tuple([part.item(numbers) for part in self.parts])
 
 
 class LineShapes(ABC):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 from seeds_kit import LONG, shares
@@ -135,3 +136,20 @@ def test_nothing_is_learnt_by_what_is_not_keyed() -> None:
     lines = ["G90 G1 F9 X1", "X2", "X3", "X4", ""]
     translator = Hidden(lines, "a", default_registry().dialect("siemens"), Reading())
     assert [block for _, block in translator.run()][-1] == "X4 P4"
+
+
+def test_most_lines_of_a_program_are_learnt(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One value that every line looks at, and that is not keyed, would cost all of it."""
+    translator = default_registry().dialect("siemens").translator
+    assert translator is not None
+    one_by_one: list[int] = []
+
+    def counted(self: Any, items: Sequence[gx.Item]) -> object:
+        one_by_one.append(self.line)
+        return blocks(self, items)
+
+    blocks = translator.blocks
+    monkeypatch.setattr(translator, "blocks", counted)
+    lines = [f"G1 X{k} Y{k % 7}.5\nG3 X={k + 5} Y{k % 7}.5 CR=3" for k in range(100)]
+    found("\n".join([*HEAD, *lines, "M30", ""]), "siemens", READINGS[0])
+    assert len({*one_by_one}) < 20

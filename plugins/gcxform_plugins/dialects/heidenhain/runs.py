@@ -22,7 +22,7 @@ WORDS = re.compile("(?:N )?L(?: [XYZ]V)+(?: R0)?(?: FV| FMAX)?")
 """What words of a line have to be, each by a letter: then its block is what is left of it."""
 LEFT_OUT = re.compile(r"^(?:[0-9]+ )?L | R0| FMAX|\+", re.MULTILINE)
 MOST_SHAPES = 32
-LEAST = 3  # lines
+LEAST = 2  # lines
 
 
 class Runs(Klartext):
