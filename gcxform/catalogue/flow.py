@@ -43,7 +43,9 @@ CODES: dict[str, tuple[str, str]] = {
         "step turns positions into others (volumetric, rtcp), a file is refused in which nothing "
         "else moves, and so is a second program that moves, in a file of a control that runs "
         "programs by their numbers: it would stay as it is, and the stamp would say otherwise. "
-        "Give each program a file of its own.",
+        "Give each program a file of its own. A file that is a subprogram by itself is transformed "
+        "from where [entry] says that it is called; what is written leaves its caller what it "
+        "left before, which is refused where no block can restore it.",
     ),
     "GX227": (
         "Which file the subprogram is in is not certain",

@@ -193,7 +193,7 @@ class Plan:
         groups: set[str] = set()
         for mode in self.reading.entry.modes:
             code = self.source.codes.get(mode)
-            if code is None or code.group not in GROUPS or code.group in groups:
+            if code is None or (code.group not in GROUPS and mode != "G49") or code.group in groups:
                 message = f"modes: {mode!r} is no mode of {self.source.name}, or one of two"
                 raise UsageError.one("GX707", message, hint='modes = "G90 G21 G94" in [entry]')
             groups.add(code.group)

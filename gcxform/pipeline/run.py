@@ -21,6 +21,7 @@ from gcxform.modal.reader import Apart, WindowReader
 from gcxform.pipeline.blind_moves import check_blind
 from gcxform.pipeline.called_files import not_done_yet
 from gcxform.pipeline.cutter_comp import check_compensated
+from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
@@ -69,11 +70,9 @@ class Stages:
 
 
 class Run:
-    """One run: its readers, writer and verifier; `leaves` are codes to be stated at its end."""
+    """One run: its readers, writer and verifier; `leaves` is what it writes before its end."""
 
-    def __init__(
-        self, plan: Plan, source: Source, verify: str, leaves: tuple[str, ...] = ()
-    ) -> None:
+    def __init__(self, plan: Plan, source: Source, verify: str, leaves: Leaving = NOTHING) -> None:
         self.plan = plan
         self.leaves = leaves
         self.marks = plan.marks(source)
@@ -258,7 +257,8 @@ class Run:
                 if self.verifier is not None:
                     given = one.window.lines, emitted.source, emitted.nth
                     proof.begin(emitted.text, replace(one.read, path=one.meant), *given)
-                self._hand_on(one.window, emitted, out)
+                read = one.window, one.table, one.read.live
+                self._hand_on(one.window, self.leaves.with_back(emitted, *read), out)
                 progress(len(one.window.text))
                 del apart, one, emitted  # or they would last until the next one is there
                 heap.give_back()
@@ -286,8 +286,8 @@ class Run:
         assert self.stages is not None
         emitted = self.stages.emitter.emit(one.window, one.table, one.read, one.path)
         emitted = emitted.framed(self.frame, first, last)
-        if self.leaves:
-            emitted = emitted.leaving(self.leaves, one.window, one.table, one.read.live)
+        if self.leaves.codes:
+            emitted = emitted.leaving(self.leaves.codes, one.window, one.table, one.read.live)
         if self.heads is None:
             return emitted
         text, kept = self.heads.edit(emitted.text)

@@ -5,8 +5,9 @@ state that the source leaves, so modes that the passes have changed are stated a
 return. Where what is written would depend on what is not known the file is kept, byte for byte, if
 no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
 
-A pass that does turn them keeps what moves nothing. Errors are those of a place, so all else is for
-the run of the program that calls it, from wherever that does.
+A pass that does turn them keeps what moves nothing. Errors are those of a place: all else is for
+the run of the program that calls it, or `[entry]` says where the axes stand and in which modes.
+Then it begins and ends at commands that its caller gives and expects (`at_call.py`).
 """
 
 from __future__ import annotations
@@ -25,9 +26,11 @@ from gcxform.flow.subprogram_file import moves_nothing
 from gcxform.flow.uncalled_subprograms import HINT
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
 from gcxform.modal.reader import windows_of
-from gcxform.modal.state import State
+from gcxform.modal.state import Entry, State
+from gcxform.pipeline.at_call import FROM_THE_START, check_left, going_back, led_in
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
@@ -41,8 +44,18 @@ USES = {
     "plane": "IJKR",
 }
 """The modal groups on which a block depends that has one of these addresses."""
+OF_PLACES = {"frame": "XYZABCUVW", "tool-length": "XYZUVW"}
+"""Those on which it depends besides where an axis is in the machine."""
 STATED_AGAIN = ("units", "plane", "distance", "feed-mode", "arc-distance")
 LAST_OF_TEXT = "GX2"
+HINT_OF_PLACES = (
+    f'{HINT}; or say how it is called: modes = "G91 G21 G94 G17 G54 G49" in [entry], with the '
+    "codes in force there, and by its start where the axes stand, if that is one place"
+)
+AT_ONE_PLACE = (
+    "its caller is not compensated, and has none of G41, G52, G68, G92 or a scale in force; where "
+    "it is called from another place, the error of this one is taken off"
+)
 
 
 @dataclass
@@ -63,15 +76,15 @@ def run_subprogram(
 ) -> Certificate:
     """Run a plan on a file that is a subprogram by itself. Raises GcxformError."""
     folds = any(step.demands.folds for step in plan.path_passes)
-    held, again = Held(), "on" if verify == "off" else verify
-    if plan.marks(source).changes or folds:
-        calling = aliases(plan.machine_reading.control)
-        kept = plan.source is plan.target and moves_nothing(source, plan.source, calling)
-        if folds or not kept:
-            message = "this file is a subprogram: where its caller stands is not known here"
-            raise InputError.one("GX226", message, hint=HINT)
+    changes, held, again = plan.marks(source).changes, Held(), "on" if verify == "off" else verify
+    if (changes or folds) and _moves_nothing(plan, source):
         done = certificate(*_run_of_text(plan, source, verify, held))
         done.assumed.append("this is a subprogram in which nothing moves: kept as it stands")
+    elif folds or (changes and plan.reading.entry == Entry()):
+        message = "this file is a subprogram: where its caller stands is not known here"
+        raise InputError.one("GX226", message, hint=HINT if folds else HINT_OF_PLACES)
+    elif changes:
+        done = _entered(plan, source, again, held)
     else:
         try:
             done = _entered(plan, source, again, held)
@@ -88,20 +101,44 @@ def run_subprogram(
     return done
 
 
+def _moves_nothing(plan: Plan, source: Source) -> bool:
+    """Whether a file may stay, for in it nothing moves. Folding shifts is not asked of it then."""
+    calling = aliases(plan.machine_reading.control)
+    return plan.source is plan.target and moves_nothing(source, plan.source, calling)
+
+
 def _entered(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
     """Transform a subprogram from the state of its call. Raises InputError where that is open."""
     plan = at_entry(plan)
-    run, out = _done(plan, source, verify, Held())
-    if codes := _left_otherwise(run):
-        run, out = _done(plan, source, verify, held, codes)
-        if _left_otherwise(run):
-            raise _open("the modes that it leaves cannot be restored", Location(source.name))
-    else:
-        run, out = _done(plan, source, verify, held)
+    source = _led(plan, source, verify)
+    run, _ = _done(plan, source, verify, Held())
+    codes = _left_otherwise(run)
+    back = going_back(run) if plan.marks(source).changes else ()
+    if codes or back:
+        _refuse_moving_returns(run)
+    run, out = _done(plan, source, verify, held, Leaving(codes, back))
+    if codes and _left_otherwise(run):
+        raise _open("the modes that it leaves cannot be restored", Location(source.name))
     found = certificate(run, out)
     said = " ".join(_said(plan)) or "nothing is given"
     found.assumed.append(f"this is a subprogram, and is entered in a state of which {said}")
+    if plan.marks(source).changes:
+        check_left(b"".join(held.parts), run)
+        found.assumed.append(AT_ONE_PLACE)
     return found
+
+
+def _led(plan: Plan, source: Source, verify: str) -> Source:
+    """Return a program whose first move begins where it can: see `at_call.py`."""
+    if not plan.marks(source).changes:
+        return source
+    try:
+        _done(plan, source, verify, Held())
+    except InputError as why:
+        first = why.diagnostics[0]
+        if first.code == FROM_THE_START and first.where is not None:
+            return led_in(source, plan, first.where) or source
+    return source
 
 
 def _said(plan: Plan) -> Iterator[str]:
@@ -123,8 +160,8 @@ def at_entry(plan: Plan) -> Plan:
     dialect = _begun(plan.source, entry.modes)
     reading = replace(
         reading,
-        start={**reading.start, **entry.start},
-        feed=reading.feed if entry.feed is None else entry.feed,
+        start=entry.start,
+        feed=entry.feed,
         parameters={**reading.parameters, **entry.parameters},
         units="",
     )
@@ -138,9 +175,9 @@ def _begun(dialect: type[Dialect], modes: tuple[str, ...]) -> type[Dialect]:
 
 
 def _done(
-    plan: Plan, source: Source, verify: str, held: Held, leaves: tuple[str, ...] = ()
+    plan: Plan, source: Source, verify: str, held: Held, leaves: Leaving = NOTHING
 ) -> tuple[Run, Output]:
-    """Run once over the file, in one window. `leaves` are the codes to be stated at its end."""
+    """Run once over the file, in one window. `leaves` is what is to be stated at its end."""
     run = Run(plan, source, verify, leaves)
     _refuse_unknown(run, plan)
     out = Output(held.parts.append, held.lines)
@@ -173,11 +210,12 @@ def _run_of_text(plan: Plan, source: Source, verify: str, held: Held) -> tuple[R
 def _refuse_unknown(run: Run, plan: Plan) -> None:
     """Raise InputError for a block that depends on a mode that nobody has said."""
     said = {plan.source.codes[code].group for code in plan.reading.entry.modes}
+    uses_of = USES | (OF_PLACES if plan.marks(run.given).changes else {})
     for window, reader in windows_of(run.source, run.dialect):
         table = reader.table
         table.update()
         found = {}
-        for group, letters in USES.items():
+        for group, letters in uses_of.items():
             if group in said:
                 continue
             stated = table.groups[window.shape, COLUMNS.index(group)] >= 0
@@ -218,6 +256,18 @@ def _left_otherwise(run: Run) -> tuple[str, ...]:
 def _same_feed(one: State, other: State) -> bool:
     values = one.feed * one.feed_unit, other.feed * other.feed_unit
     return bool(np.isclose(*values, rtol=1e-9, atol=0.0, equal_nan=True))
+
+
+def _refuse_moving_returns(run: Run) -> None:
+    """Raise InputError if the block that returns moves: nothing can be said between the two."""
+    for window, reader in windows_of(run.source, run.dialect):
+        reader.table.update()
+        axes = [ord(axis) - ord("A") for axis in USES["distance"]]
+        moves = (reader.table.slots[window.shape][:, axes] >= 0).any(axis=1)
+        wrong = moves & reader.table.flag("ends", window.shape)
+        if wrong.any():
+            where = Location(run.source.name, window.first_line + int(np.argmax(wrong)) + 1)
+            raise located(_open("the block that returns moves too", where), run.source)
 
 
 def _open(message: str, where: Location) -> InputError:
