@@ -275,6 +275,8 @@ class Branches(Forks):
     def _check_labels(self) -> None:
         """Refuse sequence numbers that jumps name and that would stand twice in what is written."""
         run = self.run
+        if not (self.labels or self.open):
+            return
         written: dict[int | None, int] = {}
         text = b"".join(run.text)
         for each in text.splitlines():

@@ -45,8 +45,8 @@ def events_of(
         row = int(np.searchsorted(rows, first)) + behind
         events.append(Event(row, event.what, event.values, event.line, True))
         rank.append(1)
-    for each in lines.unknown:
-        row = int(np.searchsorted(rows, each.line))
+    open_rows = np.searchsorted(rows, [each.line for each in lines.unknown]).tolist()
+    for each, row in zip(lines.unknown, open_rows, strict=True):
         events.append(Event(row, each.text, (), each.line + first_line))
         rank.append(-1)
     order = np.lexsort((rank, [event.line for event in events], [event.row for event in events]))

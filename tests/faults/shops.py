@@ -76,8 +76,8 @@ FAULTS = (
     (
         "what a step goes by is not turned",
         BLIND,
-        "frame.turned(step)[0]",
-        "step[0]",
+        "return frame.turned(steps)",
+        "return steps",
         STEPS,
     ),
     (

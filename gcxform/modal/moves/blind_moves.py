@@ -8,8 +8,6 @@ more: under cutter compensation, along vectors of the tool, and in another diale
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from gcxform.dialect.dialect import INCH
@@ -20,6 +18,7 @@ from gcxform.modal.moves.rows import Rows
 from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 
@@ -61,9 +60,9 @@ def blind_rows(track: Track, rows: Rows) -> Rows:
     for plane in Plane if arcs.any() else ():
         here = arcs & (track.modes.plane[rows.line] == plane)
         blind |= here & np.isnan(rows.end[:, plane.axes[:2]]).any(axis=1)
-    for row in np.flatnonzero(blind).tolist():
-        line, frame = int(rows.line[row]), track.frames[int(rows.frame[row])]
-        track.lines.unknown.append(Unknown(line, _said(track, line, frame), ""))
+    lines = rows.line[blind]
+    for line, way in zip(lines.tolist(), _ways(track, lines, rows.frame[blind]), strict=True):
+        track.lines.unknown.append(Unknown(line, _said(track, line, way), ""))
     if blind.any():
         track.state.assumed.setdefault(KEPT, None)
     form = np.where(blind, np.int8(Form.BLIND), rows.form)
@@ -79,23 +78,37 @@ def note_way(track: Track, line: int) -> None:
     words = track.words_on(line) if not track.lines.reading.crosses else {}
     named = [track.axes.index(axis) for axis in words]
     if track.modes.incremental[line] and np.isnan(track.state.position[named]).any():
-        way = _way(track, line, track.frame)
-        said = (f"{axis}{value + 0.0:.6f}" for axis, value in way if value or axis in words)
+        (way,) = _turned(track, np.array([line]), track.frame).tolist()
+        each = zip(track.axes, way, strict=True)
+        said = (f"{axis}{value + 0.0:.6f}" for axis, value in each if value or axis in words)
         track.lines.unknown.append(Unknown(line, f"{BY}{' '.join(said)}", BY_WAY))
 
 
-def _way(track: Track, line: int, frame: Frame) -> Iterator[tuple[str, float]]:
-    """Yield what the axes of a line in G91 go by, mm and degrees in positions."""
-    words = track.words_on(line)
-    step = np.array([[words.get(axis, 0.0) for axis in track.axes]])
+def _ways(track: Track, lines: Ints, frames: Ints) -> list[list[float]]:
+    """Return what lines in G91 go by, each in its frame: a number for each axis of the track."""
+    found = np.zeros((len(lines), len(track.axes)))
+    for number in distinct(frames).tolist():
+        here = frames == number
+        found[here] = _turned(track, lines[here], track.frames[number])
+    ways: list[list[float]] = found.tolist()
+    return ways
+
+
+def _turned(track: Track, lines: Ints, frame: Frame) -> Floats:
+    """Return what the axes (n, axes) go by in lines of a frame, mm and degrees in positions."""
+    steps = np.zeros((len(lines), len(track.axes)))
+    for k, axis in enumerate(track.axes):
+        word = track.column(axis)
+        if word is not None:
+            steps[:, k] = np.where(word[1][lines], word[0][lines], 0.0)
     if frame.diameter:
-        step[0, 0] *= 0.5
-    return zip(track.axes, frame.turned(step)[0].tolist(), strict=True)
+        steps[:, 0] *= 0.5
+    return frame.turned(steps)
 
 
-def _said(track: Track, line: int, frame: Frame) -> str:
+def _said(track: Track, line: int, way: list[float]) -> str:
     """Return what a move goes by, mm and degrees in positions, and the words of an arc."""
-    parts = [f"{axis}{value:.6f}" for axis, value in _way(track, line, frame) if value]
+    parts = [f"{axis}{value:.6f}" for axis, value in zip(track.axes, way, strict=True) if value]
     scale = INCH if track.modes.inch[line] else 1.0
     for address in "IJKR" + track.dialect.arc_rule.turns if track.modes.motion[line] > 1 else "":
         word = track.lines.word(address)
