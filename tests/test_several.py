@@ -41,6 +41,37 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
+@pytest.mark.parametrize(
+    ("code", "words"),
+    [
+        ("GX727", ("jobs", "-o", "jobs")),
+        ("GX727", ("jobs/deep", "-o", "jobs")),
+        ("GX727", ("part.nc", "jobs/same.nc", "-o", ".")),
+        ("GX727", ("jobs", "-o", "linked")),
+        ("GX901", ("jobs", "-o", "jobs/deep")),
+    ],
+)
+def test_what_is_named_is_not_left_out_in_silence(
+    code: str, words: tuple[str, ...], shop: Path
+) -> None:
+    """What lies in a folder of results is left out, unless it is named itself."""
+    (shop / "linked").symlink_to("jobs")
+    if code == "GX901":
+        for name in ("bad.nc", "same.nc"):
+            (shop / "jobs" / name).unlink()
+    before = contents(shop)
+    found = call("run", *words)
+    assert (found.exit_code > 0, code in found.stderr) == (True, True), found.stderr
+    assert contents(shop) == before
+
+
+def test_certificates_may_go_beside_the_programs(shop: Path) -> None:
+    """They are no programs, so nothing there is taken for an earlier result."""
+    found = call("run", "jobs/same.nc", "part.nc", "-o", "out", "--certificate", "jobs")
+    assert found.exit_code == 0, found.stderr
+    assert {"out/same.nc", "jobs/same.nc.json", "jobs/part.nc.json"} <= contents(shop).keys()
+
+
 # --- the pipeline of a folder ---
 
 

@@ -70,4 +70,18 @@ MUTATIONS = (
         "safe = text",
         SEVERAL,
     ),
+    Mutation(
+        "several: what is named and lies where results go is left out in silence",
+        "gcxform/cli/common/jobs.py",
+        "if self.output is not None and lies_in(name, self.output):",
+        "if False:",
+        SEVERAL,
+    ),
+    Mutation(
+        "several: a run without any program has done all",
+        "gcxform/cli/common/jobs.py",
+        "            if not jobs:\n",
+        "            if False:\n",
+        SEVERAL,
+    ),
 )

@@ -42,6 +42,9 @@ class Places:
             jobs = [self._alone(files[0], like)]
         else:
             jobs = list(self._several(files, like))
+            if not jobs:
+                message = f"there are no programs but those in {self.output}, where results go"
+                raise FileError.one("GX901", message, hint="name programs of another folder")
         for job in jobs:
             out = {} if self.in_place else {"-o": job.out}
             beside = {"--certificate": job.certificate, "--map": job.source_map}
@@ -83,9 +86,10 @@ class Places:
             if os.path.exists(name) and not os.path.isdir(name):
                 message = f"{name} is a file, and there are several programs"
                 raise UsageError.one("GX749", message, hint="name a folder")
+        self._check_elsewhere(files)
         for file, below in _named(files):
-            if _lies_in(file, mine):
-                continue
+            if self.output is not None and lies_in(file, self.output):
+                continue  # a result of an earlier run
             put = str(file) if self.in_place else _in(self.output, below)
             yield replace(
                 like,
@@ -96,6 +100,13 @@ class Places:
                 source_map=_in(self.source_map, below, ".map.json"),
             )
 
+    def _check_elsewhere(self, files: Iterable[str]) -> None:
+        """Raise UsageError for what is named and lies in the folder of the results."""
+        for name in files:
+            if self.output is not None and lies_in(name, self.output):
+                message = f"-o {self.output} would overwrite {name}, which is read"
+                raise UsageError.one("GX727", message, hint="write elsewhere, or --in-place")
+
 
 def _named(files: Sequence[str]) -> Iterator[tuple[Path, Path]]:
     """Yield programs, each with its place below the folder that is named, or its name."""
@@ -105,11 +116,6 @@ def _named(files: Sequence[str]) -> Iterator[tuple[Path, Path]]:
             if known.pop(os.path.realpath(file), None) is not None:
                 folder = os.path.isdir(name)
                 yield file, file.relative_to(name) if folder else Path(file.name)
-
-
-def _lies_in(file: Path, folders: Iterable[str]) -> bool:
-    """Whether a file lies in a folder of results, of an earlier run for example."""
-    return any(lies_in(file, folder) for folder in folders)
 
 
 def _in(folder: str | None, below: Path, ending: str = "") -> str | None:
