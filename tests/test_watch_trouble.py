@@ -220,3 +220,13 @@ def test_a_folder_without_links_and_case(exfat: Path) -> None:
         assert b"X1." in done_.stdout_bytes
     same = call(*words, str(exfat / "Subs"), str(main), "-o", str(exfat / "MAIN.NC"))
     assert (same.exit_code, "GX7" in same.stderr) == (2, True), same.output
+
+
+def test_a_program_that_cannot_be_read_is_called_by_its_name(tmp_path: Path) -> None:
+    """Where it lies while it is worked on is no matter of who dropped it."""
+    (tmp_path / "part.nc").write_bytes("G21 G90\r\nM2\r\n".encode("utf-16"))
+    (tmp_path / "gcxform.toml").write_text(PIPELINE)
+    found = call("watch", *ONCE, str(tmp_path))
+    assert found.stdout == "part.nc: failed   error[GX901]: part.nc is not a program of bytes\n"
+    said = (tmp_path / "failed" / "part.nc.gcxform.txt").read_text()
+    assert ".gcxform" not in said

@@ -60,23 +60,27 @@ class Source:
         return cls(io.BytesIO(text), name)
 
     @classmethod
-    def open(cls, path: Path) -> Source:
-        """Return a copy of a program in a file, or in a pipe that has a name. Raises FileError."""
+    def open(cls, path: Path, called: str = "") -> Source:
+        """Return a copy of a program in a file, or in a pipe that has a name. Raises FileError.
+
+        `called` is what messages call it, where that is not its path.
+        """
+        name = called or str(path)
         try:
             kind = path.stat().st_mode
             if stat.S_ISDIR(kind):
-                raise FileError.one("GX901", f"{path} is a directory, not a program")
+                raise FileError.one("GX901", f"{name} is a directory, not a program")
             if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
                 hint = "- is the program on stdin"
-                raise FileError.one("GX901", f"{path} is a device, not a program", hint=hint)
+                raise FileError.one("GX901", f"{name} is a device, not a program", hint=hint)
             with path.open("rb") as stream:
-                found = cls.copied(stream, str(path))
+                found = cls.copied(stream, name)
             if stat.S_ISREG(kind):
                 found.folder, found.suffix = path.parent, path.suffix
             return found
         except (OSError, ValueError) as error:  # ValueError: a null character in the name
             reason = getattr(error, "strerror", None) or str(error)
-            raise FileError.one("GX901", f"cannot read {path}: {reason}") from None
+            raise FileError.one("GX901", f"cannot read {name}: {reason}") from None
 
     @classmethod
     def copied(cls, stream: BinaryIO, name: str = "-") -> Source:

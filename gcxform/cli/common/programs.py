@@ -61,7 +61,9 @@ def opened(file: str, name: str = "") -> Iterator[Source]:
     """
     if file == "-" and sys.stdin is None:
         raise FileError.one("GX901", "cannot read stdin: it is closed")
-    source = Source.copied(sys.stdin.buffer) if file == "-" else Source.open(Path(file))
-    source.name = name or source.name
+    if file == "-":
+        source = Source.copied(sys.stdin.buffer, name or file)
+    else:
+        source = Source.open(Path(file), name)
     with source.stream:
         yield source
