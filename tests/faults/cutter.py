@@ -116,8 +116,8 @@ MUTATIONS = (
     Mutation(
         "cutter-comp: corners go the wrong way",
         "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
-        "gx.Kind.ARC_CW if path.side[row] > 0",
-        "gx.Kind.ARC_CW if path.side[row] < 0",
+        "np.where(path.side[rows] > 0, gx.Kind.ARC_CW",
+        "np.where(path.side[rows] < 0, gx.Kind.ARC_CW",
         CUTTER,
     ),
     Mutation(

@@ -213,6 +213,7 @@ class _CentrePath:
         self.sweep = np.array(path.sweep)
         self.sense = path.sense.astype(np.int64)
         self.inserted: dict[int, Edge] = {}
+        self.listed: dict[tuple[int, ...], tuple[list[Any], ...]] = {}
 
     def resolve(self, first: int, last: int) -> None:
         """Resolve the rows of one stretch under compensation."""
@@ -238,25 +239,28 @@ class _CentrePath:
     def _edges(self, first: int, last: int, axes: list[int]) -> tuple[list[int], list[Edge]]:
         """Return the rows that move in the plane, and what they are there."""
         path, part = self.before, slice(first, last)
-        start, end = self.start[part][:, axes].tolist(), path.end[part][:, axes].tolist()
-        centre, sweep = path.centre[part][:, axes].tolist(), path.sweep[part].tolist()
-        sense = self.sense[part].tolist()
         rows, edges = [], []
-        for index, (a, b) in enumerate(zip(start, end, strict=True)):
-            if sense[index]:
-                c = centre[index]
-                edges.append(
-                    Edge((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), sense[index], sweep[index])
-                )
+        moves = zip(*(column[part] for column in self._in_plane(*axes)), strict=True)
+        for row, (a, b, c, sense, sweep) in enumerate(moves, first):
+            if sense:
+                edges.append(Edge((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), sense, sweep))
             elif abs(a[0] - b[0]) + abs(a[1] - b[1]) > STILL:
                 edges.append(Edge((a[0], a[1]), (b[0], b[1])))
             else:
                 continue
-            rows.append(first + index)
+            rows.append(row)
         if not rows or rows[0] != first:
             message = "the move that begins compensation does not move in the plane"
             raise path.refuse("GX350", np.array([first]), message, "program X or Y in that block")
         return rows, edges
+
+    def _in_plane(self, *axes: int) -> tuple[list[Any], ...]:
+        """Return starts, ends, centres, senses and sweeps of all moves, in a plane."""
+        if axes not in self.listed:
+            path, columns = self.before, [*axes]
+            places = (each[:, columns].tolist() for each in (self.start, path.end, path.centre))
+            self.listed[axes] = *places, self.sense.tolist(), path.sweep.tolist()
+        return self.listed[axes]
 
     def _place(self, rows: list[int], edges: list[Edge], axes: list[int]) -> None:
         self.end[np.array(rows)[:, None], axes] = [edge.finish for edge in edges]
@@ -292,32 +296,39 @@ class _CentrePath:
             "radius": np.full(len(row), np.nan),
         }
         corner = np.flatnonzero((counts[row] == 2) & (nth == 0))
-        for place in corner.tolist():
-            self._corner(place, int(row[place]), columns)
+        if len(corner):
+            self._corners(corner, row[corner], columns)
         path = before.with_rows(counts, **columns)
         return path.replace(feed=_feeds(before, path, row))
 
-    def _corner(self, place: int, row: int, columns: dict[str, Any]) -> None:
-        """Write the row that leads around an outside corner before a row."""
-        edge, path = self.inserted[row], self.before
-        axes = list(gx.Plane(int(path.plane[row])).axes[:2])
-        rapid = path.kind[row] == gx.Kind.RAPID
-        columns["end"][place] = self.end[row - 1]
-        columns["end"][place, axes] = edge.begin
-        columns["kind"][place] = gx.Kind.RAPID if rapid else gx.Kind.LINE
-        columns["centre"][place], columns["sweep"][place] = np.nan, 0.0
-        if edge.corner == "arc" and not rapid:
-            columns["kind"][place] = gx.Kind.ARC_CW if path.side[row] > 0 else gx.Kind.ARC_CCW
-            columns["centre"][place] = self.end[row - 1, :3]
-            columns["centre"][place, axes] = edge.start
-            columns["sweep"][place] = _turn(self.end[row - 1, axes], edge)
+    def _corners(self, places: Ints, rows: Ints, columns: dict[str, Any]) -> None:
+        """Write the rows that lead around outside corners; each is before one of `rows`."""
+        path, edges = self.before, [self.inserted[row] for row in rows.tolist()]
+        of = {plane: gx.Plane(plane).axes[:2] for plane in {*path.plane[rows].tolist()}}
+        at = np.arange(len(rows))[:, None], np.array([of[n] for n in path.plane[rows].tolist()])
+        begin, corner = (
+            np.array(each) for each in zip(*((e.begin, e.start) for e in edges), strict=True)
+        )
+        rapid = path.kind[rows] == gx.Kind.RAPID
+        around = ~rapid & np.array([edge.corner == "arc" for edge in edges])
+        before = self.end[rows - 1]
+        end, centre = before.copy(), before[:, :3].copy()
+        end[at], centre[at] = begin, corner
+        turned = np.where(path.side[rows] > 0, gx.Kind.ARC_CW, gx.Kind.ARC_CCW)
+        straight = np.where(rapid, gx.Kind.RAPID, gx.Kind.LINE)
+        columns["end"][places] = end
+        columns["kind"][places] = np.where(around, turned, straight)
+        columns["centre"][places] = np.where(around[:, None], centre, np.nan)
+        columns["sweep"][places] = np.where(around, _turns(before[at], corner, begin), 0.0)
 
 
-def _turn(begin: Floats, edge: Edge) -> float:
-    """Return the angle (rad) about a corner from where the move before ends to where one begins."""
-    u, v = begin - np.array(edge.start), np.array(edge.begin) - np.array(edge.start)
-    angle = abs(np.arctan2(u[0] * v[1] - u[1] * v[0], u @ v))
-    return float(angle)
+def _turns(ends: Floats, corners: Floats, begins: Floats) -> Floats:
+    """Return the angles (n,), rad, about corners from where moves end to where the next begin.
+
+    All points are (n, 2), mm.
+    """
+    (ux, uy), (vx, vy) = (ends - corners).T, (begins - corners).T
+    return np.asarray(np.abs(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)))
 
 
 def _feeds(before: gx.Toolpath, after: gx.Toolpath, row: Ints) -> Floats:

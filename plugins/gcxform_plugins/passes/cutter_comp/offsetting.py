@@ -83,7 +83,8 @@ class Edge:
     corner: str = ""
 
     def __post_init__(self) -> None:
-        self.first, self.last = self.direction(self.start), self.direction(self.end)
+        self.first = self.direction(self.start)
+        self.last = self.first if self.centre is None else self.direction(self.end)
 
     def direction(self, at: Point) -> Point:
         """Return the unit tangent of the move, or of its offset curve, at a point."""
