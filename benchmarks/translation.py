@@ -49,7 +49,8 @@ WAYS = 5
 M_CODES = {"grbl": {"M6": "M0"}}
 """What a user of each target says: a GRBL without a changer stops, and the operator changes."""
 INERT = {"fanuc": ("M6",), "haas": ("M6",)}
-"""Axes stand where they stood behind a tool change by hand, or by a changer that comes back."""
+"""Axes stand where they stood behind a tool change by hand, or by a changer that comes back: of the
+target as of the source."""
 RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
 SETTINGS = {"cycle-without-place": "drills"}
@@ -107,8 +108,9 @@ def asked_for(made: Pipeline) -> Pipeline:
         number: structs.replace(tool, radius=RADIUS) if isnan(tool.radius) else tool
         for number, tool in machine.tools.items()
     }
-    control = {**machine.control, **known}
-    return replace(made, machine=structs.replace(machine, tools=tools, control=control, open={}))
+    told = {"tools": tools, "control": {**machine.control, **known}}
+    inert = machine.inert_m | {int(code[1:]) for code in INERT.get(made.source.name, ())}
+    return replace(made, machine=structs.replace(machine, **told, inert_m=inert, open={}))
 
 
 @dataclass(frozen=True)

@@ -55,6 +55,13 @@ MUTATIONS = (
         ACROSS,
     ),
     Mutation(
+        "saying: what a machine file says of a tool change is not heard",
+        "gcxform/modal/meaning/sorting.py",
+        'own = code.group in ("user", "tool")',
+        'own = code.group == "user"',
+        ACROSS,
+    ),
+    Mutation(
         "saying: R of G10 turns on every control",
         "gcxform/emit/zeros_said.py",
         'if kind == 2 and takes and "R" in slots and one.g10_rotates != other.g10_rotates:',

@@ -301,7 +301,7 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         meaning.ends |= code.ends
         if code.loses_position:
             meaning.loses_position = True
-            own = code.group == "user"  # of the other codes nobody can say that they move nothing
+            own = code.group in ("user", "tool")  # of others nobody can say that they move nothing
             meaning.lost_by.add(int(word.value.value) if own else -1)
         meaning.runs_macro |= code is dialect.block_rule.unknown_m
         meaning.changes_tool |= code.group == "tool"

@@ -27,7 +27,7 @@
 | H by itself | another length, or the radius of G41: parameter 5001 decides; Z is not known |
 | G10 L2 P0, L20 | shifts all work offsets; sets G54.1 P1, P2 ... |
 | G10 L1, L10 to L13 | kept; the lengths and radii of tools are not known from there on |
-| tool change | moves axes: positions are unknown after it |
+| tool change | moves axes: positions are unknown after it, but for `inert-m = [6]` |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
 | G76, G87, G88 | depend on parameters or on the operator: refused |
