@@ -55,7 +55,7 @@ RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
 SETTINGS = {"cycle-without-place": "drills"}
 """Setting 28 as a Haas is delivered."""
-INCREMENT = {"fanuc": "IS-B"}
+INCREMENTS = {"fanuc": {None: "IS-B", "calculator": "calculator IS-B"}}
 """The steps to which a control rounds what it computes: of most machines those of 0.001 mm."""
 SLASHES = "execute"
 """The switch for blocks with a slash is off."""
@@ -90,12 +90,12 @@ def into(job: Job, target: str) -> Pipeline:
 
 def asked_for(made: Pipeline) -> Pipeline:
     """Return a pipeline with what its own control was never asked for, as its user knows it."""
-    reading = made.reading
+    reading, steps = made.reading, INCREMENTS.get(made.source.name, {})
     made = replace(
         made,
         reading=replace(
             reading,
-            increment=reading.increment or INCREMENT.get(made.source.name),
+            increment=steps.get(reading.increment, reading.increment),
             block_delete=reading.block_delete or SLASHES,
         ),
     )

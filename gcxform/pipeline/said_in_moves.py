@@ -33,7 +33,12 @@ CHORD_ERROR = 0.002
 MEASURED = 0.01  # of it: what splines leave to the proof, whose bound is an upper one
 SPLINE = re.compile(rb"[Gg][ \t]*0*(5)(?:\.([12])?0*)?(?![0-9.])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
-SAID = "splines become lines within 2 um of them; the pass segment takes another chord error"
+TURNED = re.compile(rb"[Gg][ \t]*0*10(?![0-9.])[^\r\n]*[Rr]")
+"""Work offsets that are turned: arcs may then lie in a plane that is turned out of the axes."""
+SAID = (
+    "splines, and arcs out of the planes of the axes, become lines within 2 um of them; the pass "
+    "segment takes another chord error"
+)
 
 
 def settled(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]:
@@ -51,10 +56,17 @@ def with_lines_for_splines(plan: Plan, source: Source) -> tuple[Plan, tuple[str,
     by_a_step = any(LINEAR_ONLY in step.ensures for step in plan.path_passes)
     if plan.source is plan.target or by_a_step:
         return plan, ()
-    texts = (COMMENT.sub(b"", text) for text in source.windows() if SPLINE.search(text))
-    if not any(_foreign(plan, found) for text in texts for found in SPLINE.finditer(text)):
+    texts = (COMMENT.sub(b"", text) for text in source.windows())
+    if not any(_bends(plan, text) for text in texts):
         return plan, ()
     return replace(plan, chord_error=CHORD_ERROR), (SAID,)
+
+
+def _bends(plan: Plan, text: bytes) -> bool:
+    """Whether a text has letters by which there may be curves that the target has not."""
+    if plan.source.offset_rule.g10_rotates and TURNED.search(text):
+        return True
+    return any(_foreign(plan, found) for found in SPLINE.finditer(text))
 
 
 def _foreign(plan: Plan, found: re.Match[bytes]) -> bool:

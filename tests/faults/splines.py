@@ -54,6 +54,20 @@ MUTATIONS = (
                 SPLINE_LAWS,
             ),
             (
+                "tilted arcs go around the other way",
+                "gcxform/modal/moves/tilted_arcs.py",
+                "angle = np.arctan2(away[1], away[0]) + path.sense[row] * sweep * np.arange",
+                "angle = np.arctan2(away[1], away[0]) - path.sense[row] * sweep * np.arange",
+                "tests/test_tilted_arcs.py",
+            ),
+            (
+                "tilted arcs of two circles are of one",
+                "gcxform/modal/moves/tilted_arcs.py",
+                "ONE_CIRCLE = 1e-6",
+                "ONE_CIRCLE = 1e6",
+                "tests/test_corpus.py::test_case",
+            ),
+            (
                 "weights do not count in tangents",
                 "gcxform/toolpath/nurbs.py",
                 "slope[:, -1:] * place",

@@ -143,8 +143,9 @@ def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0
     if meaning.compensates and not meaning.is_length("D") and number > 0:
         used.radii.setdefault(f"{number:g}", block.place)
-    for code in meaning.lost_by - {-1}:
-        used.own_codes.setdefault(str(code), block.place)
+    changes = {number for number, code in dialect.m_codes.items() if code.group == "tool"}
+    for number in meaning.lost_by - changes - {-1}:
+        used.own_codes.setdefault(str(number), block.place)
 
 
 def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.findings import Findings
+from gcxform.modal.lines import Lines
 from gcxform.modal.moves.tilted_arcs import with_legs
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
@@ -38,10 +39,9 @@ class ArcWords:
     way: Floats
 
 
-def resolve_arcs(
-    path: Toolpath, words: ArcWords, dialect: type[Dialect], findings: Findings
-) -> Toolpath:
+def resolve_arcs(path: Toolpath, words: ArcWords, lines: Lines) -> Toolpath:
     """Return the path with centres and sweeps of its arcs."""
+    dialect, findings = lines.dialect, lines.findings
     rows = np.flatnonzero(path.is_arc)
     centre = np.full((len(path), 3), np.nan)
     sweep = np.zeros(len(path))
@@ -64,15 +64,15 @@ def resolve_arcs(
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
     centre[rows] = np.where(nowhere, np.nan, centre[rows])
-    return _as_positions(path.replace(centre=centre, sweep=sweep), dialect, findings)
+    return _as_positions(path.replace(centre=centre, sweep=sweep), lines)
 
 
-def _as_positions(path: Toolpath, dialect: type[Dialect], findings: Findings) -> Toolpath:
+def _as_positions(path: Toolpath, lines: Lines) -> Toolpath:
     """Return arcs of turned frames as they lie between positions; a mirror changes their sense."""
     if path.plainly_framed:
         return path
     if _turned(path):
-        path = with_legs(path, dialect, findings)
+        path = with_legs(path, lines)
     kind = np.where(path.is_arc & path.mirrored, 5 - path.kind, path.kind).astype(np.int8)
     arcs = np.flatnonzero(path.is_arc)
     centre = path.centre.copy()

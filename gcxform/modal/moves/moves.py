@@ -294,7 +294,7 @@ class Moves:
             path = read_splines(path, self.lines, self.modes)
         if path.has_arcs:
             words = self._arc_words(line[path.is_arc])
-            path = resolve_arcs(path, words, self.dialect, self.findings)
+            path = resolve_arcs(path, words, self.lines)
         return self.nurbs.as_beziers(path)
 
     def _unfinished(self, rows: Rows) -> Toolpath:
