@@ -5,6 +5,7 @@ on every run), `long` over night; `faults` is `ci` for `tests/mutations.py`.
 """
 
 import gc
+import itertools
 import os
 from pathlib import Path
 
@@ -27,6 +28,7 @@ settings.register_profile(  # that it fails is enough: the least example is not 
 settings.register_profile("long", max_examples=20_000, deadline=None, suppress_health_check=SLOW)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
+COUNT = itertools.count()  # of folders of tests
 GARBAGE = (
     20_000,
     20,
@@ -63,3 +65,9 @@ def shared() -> Path:
     if not SHARED.is_dir():
         pytest.skip(f"{SHARED} is not here: published data not compared")
     return SHARED
+
+
+@pytest.fixture
+def tmp_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return an empty folder; pytest's own looks for its number among those of all tests before."""
+    return tmp_path_factory.mktemp(f"test{next(COUNT)}", numbered=False)

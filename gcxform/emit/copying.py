@@ -19,7 +19,7 @@ from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.system.arrays import Flags, Ints
-from gcxform.system.distinct import distinct, union
+from gcxform.system.distinct import distinct, one_of, union
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Form
 
@@ -116,7 +116,7 @@ class Copying:
         if len(threads):
             other = (pieces.count[threads] != 1) | ~self.same.units()[threads]
             wrong = union(wrong, threads[other])
-        points = distinct(self.path.block[np.isin(self.path.form, IN_PLACE)])
+        points = distinct(self.path.block[one_of(self.path.form, IN_PLACE)])
         other = np.isin(points, pieces.line[stated.repaired]) | ~self.same.units()[points]
         wrong = union(wrong, points[other])
         if not len(wrong):
@@ -239,10 +239,10 @@ class Copying:
         own = np.flatnonzero(~plain)
         if len(own):
             good[own] &= self.same.words(rows[own], others[own])
-        turned = plain | np.isin(self.path.form[rows], (Form.SPLINE, *IN_PLACE))
+        turned = plain | one_of(self.path.form[rows], (Form.SPLINE, *IN_PLACE))
         good &= ~turned | self.same.frames(rows, others)
         starts_exact, exact = self._exactness(rows, others, good & ~converted[lines])
-        points = np.flatnonzero(np.isin(self.path.form[rows], IN_PLACE))
+        points = np.flatnonzero(one_of(self.path.form[rows], IN_PLACE))
         if len(points):
             placed = self.same.starts(rows[points], others[points])
             good[points] &= starts_exact[points] | placed
@@ -291,7 +291,7 @@ class Copying:
         if not copied.any() and not believed.any():
             return np.broadcast_to(False, (len(path), 3))
         plain = (path.form == Form.PLAIN) & ~path.blocks.incremental[path.block]
-        plain |= np.isin(path.form, PLACES) & self.positions.last
+        plain |= one_of(path.form, PLACES) & self.positions.last
         whole = np.mod(path.sweep + 1e-9, TURN) < 2e-9  # a circle leaves the axes where they are
         shifts = [frame.matrix is None and not frame.polar for frame in path.frames]
         by_axis = np.array(shifts, np.bool_)[path.frame]

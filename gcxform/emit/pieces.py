@@ -18,6 +18,7 @@ from gcxform.emit.tapping import Taps
 from gcxform.modal.meaning.tables import NURBS, NURBS_END
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints, Small
+from gcxform.system.distinct import one_of
 from gcxform.toolpath.path import Event, Form, Given
 from gcxform.values import dataclass
 
@@ -100,7 +101,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
         role[_gone(task, count)[line]] = Role.GONE
     role[special[line]] = Role.VERBATIM
     role[event >= 0] = Role.EVENT
-    places = _at_pieces(np.isin(path.form, PLACES), False, row, has_row)
+    places = _at_pieces(one_of(path.form, PLACES), False, row, has_row)
     other_unit = special & (path.blocks.inch != task.read.path.blocks.inch)
     tap = (taps.lines & cycle)[line]
     return Pieces(
@@ -220,6 +221,8 @@ def _at_pieces(values: NDArray[Any], absent: object, row: Ints, has_row: Flags) 
 
 def _is_one_of(event: Ints, some: list[Event | Given], number: Mapping[Said, int]) -> Flags:
     """Return which pieces (pieces,) are one of the given things between moves."""
+    if not some:
+        return np.zeros(len(event), np.bool_)
     return np.isin(event, list({number[_said(each)] for each in some}))
 
 

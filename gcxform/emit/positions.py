@@ -108,9 +108,10 @@ class Positions:
     @cached_property
     def _homed(self) -> Flags:
         """Rows that go home as moves in the machine, where the axes may stand already."""
-        path = self.task.path
-        lines = np.isin(path.block, list(self.task.read.homed))
-        return np.asarray(lines & (path.form == Form.PLAIN))
+        path, homed = self.task.path, list(self.task.read.homed)
+        if not homed:
+            return np.zeros(len(path), np.bool_)
+        return np.asarray(np.isin(path.block, homed) & (path.form == Form.PLAIN))
 
     def _off_grid(self) -> bool:
         """Whether the control stands at a place that cannot be written in the present unit."""

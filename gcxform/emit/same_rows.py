@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gcxform.emit.positions import Positions
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.distinct import one_of
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form, Toolpath
 
@@ -75,7 +76,7 @@ class SameRows:
         same = (np.abs(end - old) <= EXACT) | unknown
         incremental = self.path.steps[rows]
         still = np.abs(old_way) <= EXACT
-        cycle = np.isin(self.path.form[rows], OWN_PLACES)[:, None]
+        cycle = one_of(self.path.form[rows], OWN_PLACES)[:, None]
         as_far = (np.abs(way - old_way) <= EXACT) & (incremental | (still & ~cycle))
         good = (same | as_far | self._other_axes(rows, others)).all(axis=1)
         if self.path.frames == self.original.frames:
@@ -83,7 +84,7 @@ class SameRows:
         good &= self._diameters(rows, others) & self._polar_alike(rows, others)
         words, before = self.positions.end[rows], self.original.words[others]
         alike = (np.abs(words - before) <= EXACT) | (np.isnan(words) & np.isnan(before))
-        one_move = np.isin(self.path.form[rows], (Form.PROBE, Form.SYNCHRONISED))
+        one_move = one_of(self.path.form[rows], (Form.PROBE, Form.SYNCHRONISED))
         alike |= one_move[:, None] & ~self.positions.programmed[rows]
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
         framed |= one_move | cycle[:, 0]

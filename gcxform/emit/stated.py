@@ -13,6 +13,7 @@ from gcxform.emit.pieces import Pieces
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS, NUMBER, TAP, THREAD
 from gcxform.system.arrays import Flags, Floats, Ints, Small
+from gcxform.system.distinct import one_of
 from gcxform.toolpath.path import FeedMode, Form, Kind
 from gcxform.toolpath.still_axes import turns_only
 from gcxform.values import dataclass
@@ -103,7 +104,7 @@ class _Needs:
     @cached_property
     def _feeding(self) -> Flags:
         """Whether a piece (pieces,) moves at the feed of the feed mode."""
-        paced = np.isin(self.task.read.modes.motion, (THREAD, TAP))
+        paced = one_of(self.task.read.modes.motion, (THREAD, TAP))
         return self.pieces.of_rows(self.kind != Kind.RAPID, False) & ~paced[self.pieces.line]
 
     def _stated_in(self, group: str) -> Flags:
@@ -157,7 +158,7 @@ class _Needs:
         said = pieces.leads & ~silent & (pieces.role != Role.GONE)
         sets = np.where(said, group[pieces.line], NOTHING)
         form = pieces.of_rows(self.task.path.form, Form.PLAIN)
-        moves = pieces.has_row & np.isin(form, (Form.PLAIN, Form.MACHINE, Form.BLIND))
+        moves = pieces.has_row & one_of(form, (Form.PLAIN, Form.MACHINE, Form.BLIND))
         sets[moves] = pieces.of_rows(self.kind, NOTHING)[moves]
         after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)

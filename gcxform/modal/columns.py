@@ -15,8 +15,13 @@ def fill(values: NDArray[Any], present: Flags, initial: float) -> NDArray[Any]:
     rows = np.flatnonzero(present)
     if len(rows) == len(values):
         return values
-    given = np.append(np.array(initial, values.dtype), values[rows])
-    return np.repeat(given, np.diff(rows, prepend=0, append=len(values)))
+    given = np.full(len(rows) + 1, initial, values.dtype)
+    if not len(rows):
+        return np.repeat(given, len(values))
+    given[1:] = values[rows]
+    ends = np.append(rows, len(values))
+    ends[1:] -= rows
+    return np.repeat(given, ends)
 
 
 def with_increments(value: Floats, placed: Flags, incremental: Flags, before: float) -> Floats:

@@ -29,10 +29,9 @@ from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Small
+from gcxform.system.distinct import one_of
 
 DISTANCES = "XYZABCUVWIJKR"
-
-
 LENGTHS = LINEAR + "IJKR"
 POINT = "write it with a point, where the control has it"
 NOTHING = 0  # the shape of an empty line
@@ -325,7 +324,7 @@ class Lines:
             return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))
         drill = self.dialect.codes.get("G81")
         if drill is not None and drill.group == "motion":
-            cycle = np.isin(motion, CYCLES) & (motion != THREAD_CYCLE)
+            cycle = one_of(motion, CYCLES) & (motion != THREAD_CYCLE)
             return np.where(cycle, motion, CYCLE_OFF).astype(np.int8)
         if not (self._stated[COLUMNS.index("cycle")] or self.state.memory["cycle"] != CYCLE_OFF):
             return np.broadcast_to(np.int8(CYCLE_OFF), (self.live,))

@@ -53,6 +53,7 @@ from gcxform.proof.trace import Trace
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.distinct import one_of
 from gcxform.toolpath.facts import IN_AIR, between_taps
 from gcxform.toolpath.path import WHOLE, Kind, Toolpath
 from gcxform.toolpath.travel import ways
@@ -319,11 +320,11 @@ class Verifier:
         """Check that what is tied to the spindle or to a probe is still that, and in one piece."""
         written, owner = trace.written, trace.written_owner
         form, was = written.form, trace.before.form[owner]
-        tied = np.isin(form, WHOLE) | np.isin(was, WHOLE)
+        tied = one_of(form, WHOLE) | one_of(was, WHOLE)
         broken = tied & (form != was)
         broken |= tied & (np.bincount(owner, minlength=len(trace.before))[owner] != 1)
         code, old = back.modes.motion[written.block], read.modes.motion[trace.before.block[owner]]
-        broken |= (code != old) & (np.isin(code, PROBES) | np.isin(old, PROBES))
+        broken |= (code != old) & (one_of(code, PROBES) | one_of(old, PROBES))
         if broken.any():
             output = int(written.source[np.argmax(broken)])
             message = "a move tied to the spindle or to a probe became another, or several"

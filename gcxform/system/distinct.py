@@ -1,11 +1,14 @@
-"""The values of an array, each once: what `np.unique` does, without the modules that it loads."""
+"""The values of an array: what `np.unique` and `np.isin` do, without the time that they take."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from gcxform.system.arrays import Flags
 
 
 def distinct(values: NDArray[Any]) -> NDArray[Any]:
@@ -22,3 +25,11 @@ def distinct(values: NDArray[Any]) -> NDArray[Any]:
 def union(one: NDArray[Any], other: ArrayLike) -> NDArray[Any]:
     """Return the values that are in an array or another of its type, ascending and each once."""
     return distinct(np.append(one, np.asarray(other, one.dtype)))
+
+
+def one_of(values: NDArray[Any], some: Iterable[int]) -> Flags:
+    """Return which values are one of a few: `np.isin` takes ten times as long for a short array."""
+    found = np.zeros(values.shape, np.bool_)
+    for each in some:
+        found |= values == int(each)
+    return found

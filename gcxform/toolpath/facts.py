@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from gcxform.system.arrays import Flags
-from gcxform.system.distinct import distinct
+from gcxform.system.distinct import distinct, one_of
 from gcxform.toolpath.path import OWN_DISTANCES, Form, Plane, Toolpath
 from gcxform.values import dataclass
 
@@ -36,7 +36,7 @@ def _always(path: Toolpath) -> bool:
 
 
 def _absolute(path: Toolpath) -> bool:
-    plain = path.block[~np.isin(path.form, OWN_DISTANCES)]
+    plain = path.block[~one_of(path.form, OWN_DISTANCES)]
     return not path.blocks.incremental[plain].any()
 
 
@@ -53,7 +53,7 @@ def inseparable_cycles(path: Toolpath) -> Flags:
     These are tapping, cycles that orient the spindle, and the cycles between which and one of these
     there is no plain move: what stays in force, the level they began from above all, ties them.
     """
-    cycle = np.isin(path.form, (Form.CYCLE, Form.SYNCHRONISED))
+    cycle = one_of(path.form, (Form.CYCLE, Form.SYNCHRONISED))
     tied = path.form == Form.SYNCHRONISED
     oriented = [event.row - 1 for event in path.events if event.within and event.what == "M19"]
     tied[oriented] = True

@@ -17,8 +17,8 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import EXTRUDER
-from gcxform.system.arrays import Flags, Floats, Ints, Small
-from gcxform.system.distinct import distinct
+from gcxform.system.arrays import Flags, Floats, Ints, Small, read_only
+from gcxform.system.distinct import distinct, one_of
 from gcxform.system.limits import how_to_raise, limits
 from gcxform.toolpath.columns import COLUMNS, TYPES, picked, typed
 from gcxform.toolpath.frames import Frame, by_frame
@@ -317,39 +317,37 @@ class Toolpath(Tabled):
         by = [blocks.extruded if axis == EXTRUDER else blocks.incremental for axis in self.axes]
         return np.column_stack([each[block] for each in by])
 
-    @property
+    @cached_property
     def is_arc(self) -> Flags:
-        """(n,) whether the move is an arc."""
-        return self.kind >= Kind.ARC_CW
+        """(n,) whether the move is an arc, read-only."""
+        return read_only(self.kind >= Kind.ARC_CW)
 
     @property
     def sense(self) -> Floats:
         """(n,) +1 for counter-clockwise arcs, -1 for clockwise ones, 0 for other moves."""
         return np.where(self.is_arc, 2.0 * self.kind - 5.0, 0.0)
 
-    @property
+    @cached_property
     def has_arcs(self) -> bool:
         """Whether there is any arc."""
-        return bool((self.kind >= Kind.ARC_CW).any())
+        return bool(self.is_arc.any())
 
     @cached_property
     def block(self) -> Ints:
         """(n,) index into `blocks` of each move, read-only."""
-        block = self.source - self.blocks.first
-        block.flags.writeable = False
-        return block
+        return read_only(self.source - self.blocks.first)
 
-    @property
+    @cached_property
     def is_free(self) -> Flags:
-        """(n,) whether the move may be written as other blocks than the one it came from."""
-        return np.asarray((self.form == Form.PLAIN) | (self.form == Form.THREAD))
+        """(n,) whether the move may be written as other blocks than its own, read-only."""
+        return read_only(one_of(self.form, FREE))
 
     @property
     def is_spline(self) -> Flags:
         """(n,) whether the move is a spline."""
         return np.asarray(self.form == Form.SPLINE)
 
-    @property
+    @cached_property
     def has_splines(self) -> bool:
         """Whether there is any spline."""
         return bool((self.form == Form.SPLINE).any())

@@ -180,7 +180,7 @@ MUTATIONS = (
     Mutation(
         "zeros: an axis that a block led to in its own way stands where it would be written",
         "gcxform/emit/copying.py",
-        "plain |= np.isin(path.form, PLACES) & self.positions.last",
+        "plain |= one_of(path.form, PLACES) & self.positions.last",
         "plain |= False",
         CORPUS + "[volumetric/zeros-behind-home]",
     ),

@@ -18,7 +18,7 @@ from gcxform.modal.moves.rows import Rows
 from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.system.distinct import distinct
+from gcxform.system.distinct import distinct, one_of
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 
@@ -32,7 +32,7 @@ def may_be_blind(lines: Lines, modes: Modes, moving: Flags, alone: bool) -> Flag
     if lines.reading.crosses or not alone:
         return np.zeros(lines.live, np.bool_)
     plain = moving & modes.incremental & (modes.comp == 0)
-    return np.asarray(plain & ((modes.motion <= Kind.ARC_CCW) | np.isin(modes.motion, PROBES)))
+    return np.asarray(plain & ((modes.motion <= Kind.ARC_CCW) | one_of(modes.motion, PROBES)))
 
 
 def ways(track: Track, lines: Ints) -> Floats:

@@ -21,6 +21,7 @@ from gcxform.modal.moves.rows import Own, Rows
 from gcxform.modal.moves.thread_cycles import thread_cycle
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE
 from gcxform.system.arrays import Flags, Floats, Ints, Small
+from gcxform.system.distinct import one_of
 from gcxform.toolpath.path import FeedMode, Form, Kind
 
 Objection = tuple[Flags, str, str]
@@ -37,7 +38,7 @@ class Tied:
         self.any = bool(((motion >= THREAD) & (motion <= PROBES[-1]) | self.cycle).any())
         self.thread = np.asarray(motion == THREAD)
         self.tap = np.asarray(motion == TAP)
-        self.probe = np.isin(motion, PROBES)
+        self.probe = one_of(motion, PROBES)
         self.paced = self.thread | self.tap
         self.driven = self.paced | self.cycle
 
