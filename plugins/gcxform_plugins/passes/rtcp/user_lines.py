@@ -17,7 +17,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, cast
 
 import gcxform as gx
 
@@ -123,7 +124,7 @@ def _line(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
         _check(len(words) <= 1, "several codes in one line")
         for letter, value in words:
             _check_code(letter, value, dialect, inert)
-    return _as_read(text, dialect, inert)
+    return _as_read(text, cast(Any, dialect), inert)
 
 
 def _words(text: str) -> list[tuple[str, str]]:
@@ -165,8 +166,9 @@ def _check_code(letter: str, value: str, dialect: type[gx.Dialect], inert: Codes
     _check(group == "coolant" or (own and number in inert), f"{name}: {why}")
 
 
-def _as_read(text: str, dialect: type[gx.Dialect], inert: Codes) -> Line:
-    """Return what the reader of the dialect finds in a line, from two places of the machine."""
+@lru_cache(maxsize=64)  # every window asks for its lines
+def _as_read(text: str, dialect: Any, inert: Codes) -> Line:
+    """Return what the reader of the dialect, a class, finds in a line, from two places."""
     zero = {dialect.initial["frame"]: dict.fromkeys("XYZ", 0.0)}
     paths = []
     for start in (0.0, 1.0):
