@@ -102,7 +102,7 @@ def guess_dialect(
     look = _Looks(source, head, tried)
     look.at(tried.keys() - kin)
     named = {name for name in kin if name.encode() in head.lower()}
-    fits = look.scores().keys() if look.anything_against() else ()
+    fits = (look.scores().keys() or known.keys()) if look.anything_against() else ()
     look.at(named | {name for name in kin if tried[name].kin in fits})
     scores = look.scores()
     others = max((score for name, score in scores.items() if name not in kin), default=-np.inf)

@@ -13,6 +13,8 @@ CODES = {"RAPID": 0, "LINE": 1, "ARC_CW": 2, "ARC_CCW": 3}
 LANGUAGES = {"siemens": ("G700", "G710"), "fagor": ("", "G71")}
 BEFORE = "".join(f"G10 L2 P{n} X{x} Y{y} Z{z}\n" for n, (x, y, z) in OFFSETS.items())
 BEFORE += f"G21 G90 G53 G0 X{HOME[0]} Y{HOME[1]} Z{HOME[2]}\nG28.1\nG53 G0 X0 Y0 Z0\nG80\n"
+SINGLE = ("tinyg", "g2core")
+"""Controls whose arcs in XZ are refused."""
 THERE = 2
 """Moves of what stands before a program."""
 
@@ -81,7 +83,8 @@ class Drawn:
         ends = [f"{axis}{float(at) + float(size):.4f}" for axis, at in ((first, a), (second, b))]
         radius = "CR=" if self.control == "siemens" else "R"
         way = [f"{' '.join(ends)} {centre}{size}", f"{centre}{size}"]
-        way.append(f"{' '.join(ends)} {radius}{self.random.choice(['', '-'])}{size}")
+        if self.control != "tinyg":
+            way.append(f"{' '.join(ends)} {radius}{self.random.choice(['', '-'])}{size}")
         return [f"G1 {first}{a} {second}{b}", f"G{code} {self.random.choice(way)}"]
 
     def dwell(self) -> list[str]:
@@ -107,7 +110,7 @@ class Drawn:
         return [self.unit(), f"G1 F{self.number(60, 300)}"]
 
     def turn(self) -> list[str]:
-        self.plane = self.random.choice([17, 18, 19])
+        self.plane = self.random.choice([17, 19] if self.control in SINGLE else [17, 18, 19])
         return [*(["G80"] if self.drills else []), f"G{self.plane}"]
 
     def told(self) -> list[str]:

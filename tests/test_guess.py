@@ -38,6 +38,8 @@ def test_generated_programs_may_be_in_their_dialect(name: str) -> None:
         (b"(for grbl)\nG21 G90\nG1 X1.5 F100\nM30\n", {"grbl"}),
         (b"G21 G90\nG1 X10 Y5 F100\nM30\n", {"grbl", "linuxcnc"}),
         (b"(for fluidnc)\nG21 G90\nG1 X1.5 F100\nM30\n", {"fluidnc"}),
+        (b"G21 G90\nG28.2 X0 Y0\nG1 X1.5 F100\nM30\n", {"tinyg", "g2core"}),
+        (b"(lift\nG21 G90\nG28.2 X0\nG1 X1.5 F100\nM30\n", {"tinyg"}),
         (b"(for grblhal)\nG21 G90\nG1 X1.5 F100\nM30\n", {"grbl"}),
         (b"0 BEGIN PGM A MM\n1 L X+10 R0 FMAX\n2 END PGM A MM\n", {"heidenhain"}),
         (b"", set()),

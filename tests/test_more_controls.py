@@ -114,6 +114,17 @@ def test_a_centroid_starts_in_inches():
     assert b"G20" in result.run(b"G90\nG0 X1.\nM2\n").text
 
 
+@pytest.mark.parametrize("name", ["tinyg", "g2core"])
+@pytest.mark.parametrize("window", [1, 1 << 20])
+def test_the_end_of_a_tinyg_ends_a_shift(name, window, monkeypatch):
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", window)
+    program = b"G21 G90\nG0 X1\nG92 X5\nG91 G0 X1\nM2\nG0 X7\nG92 X0\nM30\n"
+    path = gx.read(program + b"G0 X1\n", name, start={"X": 0.0}).path
+    assert path.end[:, 0].tolist() == [1.0, 2.0, 7.0, 1.0]
+    whole = gx.read(program + b"G0 X1\nM2\nG0 X2\n", name, start={"X": 0.0}).path
+    assert whole.end[:, 0].tolist() == [1.0, 2.0, 7.0, 1.0, 2.0]
+
+
 E_MODES = "{}\nG1 X10 Y0 Z0 E1 F600\n{}\nG1 X20 E1\n"
 FED = [
     ("rrf", "M83", "G90", 2.0),

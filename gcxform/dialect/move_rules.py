@@ -17,9 +17,10 @@ class ArcRule:
     in_inch   how many times as large `absolute` and `largest` are in blocks in inches
     planes    in which it can cut arcs
     turns     the word that counts the turns of an arc (n - 1 full turns beyond the arc itself)
-    circle_needs_axis_word   whether a full circle has to name an axis of its plane
-    drops_third   a centre word along the normal of the plane is dropped, beside one in the plane
-    third_is_zero such a word is taken where it is 0
+    circle    what a full circle names of the axes of its plane: "some", "none", or "" for either
+    third     what is done with a centre word along the normal of the plane: beside one in the plane
+              it is "dropped"; where it is 0 it is taken ("zero"); "": it is refused
+    turns_axes rotary axes may turn beside an arc; otherwise how they do so is not certain: refused
     centres_open  how I, J and K count is a setting of the control, until G90.1 or G91.1 says it
     """
 
@@ -31,9 +32,9 @@ class ArcRule:
     in_inch: float = 1.0
     planes: frozenset[str] = frozenset({"XY", "ZX", "YZ"})
     turns: str = ""
-    circle_needs_axis_word: bool = False
-    drops_third: bool = False
-    third_is_zero: bool = False
+    circle: str = ""
+    third: str = ""
+    turns_axes: bool = True
     centres_open: bool = False
 
 

@@ -24,6 +24,7 @@ class ProgramRule:
     needs_end          a file without M2 or M30, and not between two percent signs, is refused
     stops_at_end       M2 and M30 stop the control
     resets_at_end      where they do not: the modes they leave behind
+    shift_ends         where they do not: the shift of G92 ends there
     """
 
     has_percent: bool = True
@@ -36,6 +37,7 @@ class ProgramRule:
     needs_end: bool = False
     stops_at_end: bool = True
     resets_at_end: Mapping[str, str] = field(default_factory=dict)
+    shift_ends: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +54,7 @@ class TextRule:
     telling_comments      which of these only show or log something
     acts_anywhere         characters on which it acts as they come in, also in a comment
     semicolon_ends        `;` ends a block also inside a comment in parentheses
+    parenthesis_ends      so does the parenthesis that begins one: nothing behind it is read
     """
 
     lower_case: bool = True
@@ -64,6 +67,7 @@ class TextRule:
     telling_comments: tuple[str, ...] = ()
     acts_anywhere: str = ""
     semicolon_ends: bool = False
+    parenthesis_ends: bool = False
 
     def executes(self, comment: str) -> bool:
         """Whether the control does something when it reads a comment."""
@@ -81,8 +85,9 @@ class BlockRule:
     words             addresses the control knows, besides its axes and G, M, O
     number_first      a sequence number anywhere but at the head of its block is refused
     last_code_wins    of two codes of one group the last is taken; otherwise the block is refused
-    axis_words_once   a motion code beside a code that takes the axis words for itself (G92, G28)
-                      is refused
+    one_action        what else may not stand beside a motion code: "axes", codes that take the axis
+                      words for themselves (G92, G28); "all", any code that is not modal but G53
+                      (G4, G92.1), with or without a motion code: the control leaves the move out
     g80_beside_motion G80 beside another motion code says nothing, and beside G92 or G28 leaves it
                       the axis words; otherwise the block is refused
     most_m_words      how many M words a block may have; 0: any number
@@ -98,7 +103,7 @@ class BlockRule:
     words: str = "DEFHIJKLNPQRST"
     number_first: bool = False
     last_code_wins: bool = False
-    axis_words_once: bool = False
+    one_action: str = ""
     g80_beside_motion: bool = True
     most_m_words: int = 0
     unknown_m: MCode | None = None

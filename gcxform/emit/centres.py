@@ -109,8 +109,8 @@ class Centres:
         silent = full & ~on_grid & refit
         # LinuxCNC counts a circle that closes but for the last bit as no way at all in G93.
         silent |= full & (self.path.feed_mode[rows] == FeedMode.INVERSE_TIME)
-        if self.task.manner.target.arc_rule.circle_needs_axis_word:
-            silent[:] = False
+        rule = self.task.manner.target.arc_rule
+        silent = full & (rule.circle == "none") | silent & (rule.circle != "some")
         for axis in axes.tolist():
             self.positions.write[rows[full], axis] = True
             self.positions.write[rows[silent], axis] = False

@@ -293,7 +293,8 @@ def comment_for(source: type[Dialect], target: type[Dialect], text: str) -> str:
     if target.text_rule.executes(text) and not source.text_rule.executes(text):
         text = f"{text[0]}-{text[1:]}"
     if source is not target and text[0] == "(":
-        text = "(" + text[1:-1].replace("(", "[").replace(")", "]") + ")"
+        inner = text[1:].removesuffix(")")
+        text = "(" + inner.replace("(", "[").replace(")", "]") + ")"
     if source is not target:
         text = text.translate({ord(each): "-" for each in target.text_rule.acts_anywhere})
     if target.text_rule.semicolon_ends and not source.text_rule.semicolon_ends and text[0] == "(":

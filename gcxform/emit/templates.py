@@ -8,6 +8,7 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
+from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import LINEAR
 from gcxform.dialect.saying import ABORT, EXECUTED, LASTING
 from gcxform.emit.codewords import CodeWords
@@ -44,7 +45,7 @@ from gcxform.emit.fields import (
 from gcxform.emit.manner import Manner
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
 from gcxform.modal.meaning.printed import is_output
-from gcxform.modal.meaning.sorting import program_number_fits
+from gcxform.modal.meaning.sorting import drops_move, program_number_fits
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, Statement, Word
 
@@ -85,11 +86,13 @@ class TemplateWriter:
         self.cycle_words = CycleWords("XYZR" if key.tap else "", named, self.gap)
         self.centre_written = not key.arc
         self.feed_written = False
+        self.last: list[Comment] = []  # which end a block in the target
 
     def write(self) -> tuple[Field, ...]:
         """Return the fields of a piece of the block. Raises CannotSayError."""
         if self.key.role is Role.GONE:
             return self._comments()
+        self._check_move_stays()
         at = slot = 0
         whole = self.key.role not in (Role.MIDDLE, Role.LAST)
         gap: bytes | None = None  # what stood before words that are left out
@@ -105,9 +108,18 @@ class TemplateWriter:
                 gap = None
             slot += isinstance(item, Word) and item.address not in CODES
         self._rest()
+        for comment in self.last if self.key.role not in (Role.MIDDLE, Role.LAST) else ():
+            self._comment(comment, self.draft.gap_before(b""))
         if whole and at < len(self.text):
             self.draft.fields.append(Literal(self.text[at:].encode("latin-1")))
         return tuple(self.draft.fields)
+
+    def _check_move_stays(self) -> None:
+        """Raise CannotSayError where the target leaves out the move of such a block."""
+        name = drops_move(self.meaning, self.target) if self.source is not self.target else ""
+        if name and self.target.codes[name].effect is not Effect.BARRIER:
+            message = f"{self.target.name} leaves out the move beside {name}"
+            raise CannotSayError(0, len(self.text), message, "write two blocks")
 
     def _comments(self) -> tuple[Field, ...]:
         """Write the sequence number and the comments of a block whose move another makes."""
@@ -143,9 +155,12 @@ class TemplateWriter:
         if isinstance(item, Word):
             self._word(item, lead, slot)
         elif isinstance(item, Comment):
-            if self.text[item.start] == ";":
+            ends, crosses = self.target.text_rule.parenthesis_ends, self.source is not self.target
+            if self.text[item.start] == ";" or (ends and not crosses):
                 self._rest()
-            if self.key.role not in (Role.MIDDLE, Role.LAST):
+            if ends and crosses:
+                self.last.append(item)
+            elif self.key.role not in (Role.MIDDLE, Role.LAST):
                 self._comment(item, lead)
         elif isinstance(item, Mark):
             self._mark(item, lead)

@@ -149,6 +149,12 @@ class FrameState:
             return self.work
         return f"{self.work}{SET_ANEW}" + (f" ({times})" if times > 1 else "")
 
+    def ended(self, work: str, shift_ends: bool) -> FrameState:
+        """Return the state behind the end of a program, on a control that goes on."""
+        none = (0.0,) * len(self.axes)
+        kept = replace(self, preset=none, local=none, adrift={}) if shift_ends else self
+        return kept.in_work(work)
+
     def in_work(self, work: str) -> FrameState:
         """Return the state in another work offset."""
         return replace(self, work=work, known=True)

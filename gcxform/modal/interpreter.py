@@ -189,4 +189,5 @@ class Interpreter:
                     self.state.feed = np.nan
                 self.state.groups[name] = NUMBER[code]
                 if name == "frame":
-                    self.state.frames = self.state.frames.in_work(code)
+                    ends = self.dialect.program_rule.shift_ends
+                    self.state.frames = self.state.frames.ended(code, ends)

@@ -29,6 +29,8 @@ def gcxform_dialects() -> list[gx.Later]:
         "siemens": "siemens.dialect:Siemens",
         "fluidnc": "controls.grbls:FluidNC",
         "grblhal": "controls.grbls:GrblHAL",
+        "g2core": "controls.tinygs:G2core",
+        "tinyg": "controls.tinygs:TinyG",
         "centroid": "controls.pc:Centroid",
         "mach3": "controls.pc:Mach3",
         "mach4": "controls.pc:Mach4",

@@ -13,6 +13,8 @@ KNOWN = {
     "prusa_g92_bare_nothing": "G92 alone is refused: firmware differs in what it sets",
     "rrf_r_beats_ij": "an arc with R and a centre is refused in every dialect",
     "smoothie_g4_p_plus_s": "a dwell with two times is refused in every dialect",
+    "g2_slash_deletes": "it asks for a refusal, for other controls have a switch; g2core has none "
+    "(gcode_parser), and in another control such a block is refused",
     "mach3_dwell_unit_setting": "in its own control G4 stays as it stands, whatever P counts; "
     "tests/test_more_controls.py asks that no other control is given it",
     "okuma_dwell_unit_setting": "as mach3_dwell_unit_setting, of F",

@@ -61,8 +61,8 @@ MUTATIONS = (
     Mutation(
         "reading: the centre word that is dropped makes an arc alone",
         "gcxform/modal/moves/arcs.py",
-        "~(in_plane & (self.rule.drops_third | nothing))",
-        "~(has.any(axis=1) & (self.rule.drops_third | nothing))",
+        '~(in_plane & ((self.rule.third == "dropped") | nothing))',
+        '~(has.any(axis=1) & ((self.rule.third == "dropped") | nothing))',
         CORPUS,
     ),
     Mutation(

@@ -185,8 +185,8 @@ class Track:
     def reset_work(self, line: int) -> None:
         """Enter the work offset that the end of a program leaves, before a line."""
         old = self.frame
-        work = self.dialect.program_rule.resets_at_end["frame"]
-        self.state.frames = self.state.frames.in_work(work)
+        rule = self.dialect.program_rule
+        self.state.frames = self.state.frames.ended(rule.resets_at_end["frame"], rule.shift_ends)
         self.enter(line, old)
 
     def enter(self, line: int, old: Frame) -> None:

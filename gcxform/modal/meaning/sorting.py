@@ -245,9 +245,8 @@ def _g_act(
     if code.act == "no-length" and dialect.tool_rule.g49_takes_axes and moves:
         message = f"{name} takes the axis words here, and has no use for them"
         yield Refusal("GX202", word.start, width, message, "move in a block of its own")
-    once = dialect.block_rule.axis_words_once
     wants = code.act in TAKES_MOTION and "motion" in meaning.groups
-    if once and wants and not _leaves_words(dialect, meaning, code, taken):
+    if dialect.block_rule.one_action and wants and not _leaves_words(dialect, meaning, code, taken):
         message = f"{name} and {meaning.groups['motion']} both want the axis words"
         yield Refusal("GX202", word.start, width, message)
 
@@ -355,6 +354,15 @@ def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
     return "".join(before[:1]), "".join(after[:1])
 
 
+def drops_move(meaning: Meaning, dialect: type[Dialect]) -> str:
+    """Return a code beside which a control leaves out the move of the block, or nothing."""
+    name = meaning.groups.get("non-modal", "")
+    machine = name in dialect.codes and dialect.codes[name].act == "machine"
+    if dialect.block_rule.one_action != "all" or machine:
+        return ""
+    return name if "motion" in meaning.groups or meaning.axes else ""
+
+
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
     """Refuse a sequence number behind something else where the control wants it first."""
     items = [item for item in shape.block.items if not isinstance(item, Mark)]
@@ -378,6 +386,9 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     meaning.centres = "".join(a for a in CENTRE if a in slots)
     if meaning.dwell and meaning.axes and set(dialect.point_rule.dwell) & set(dialect.axes):
         yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
+    if name := drops_move(meaning, dialect):
+        message = f"beside {name} this control leaves the move of a block out"
+        yield Refusal("GX202", 0, len(shape.block.text), message, "write two blocks")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.arc_rule.turns}
     motion |= offset_word(dialect, meaning)
     for word in shape.block.words:

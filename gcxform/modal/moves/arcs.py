@@ -19,12 +19,16 @@ from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Form, Plane, Toolpath
 from gcxform.values import dataclass
 
+CLOSED = 1e-4
+"""rad; below this some controls take an arc for none: more than their single precision leaves."""
+
 
 @dataclass(frozen=True, slots=True)
 class ArcWords:
     """The words of arcs, in mm; nan where a word is missing.
 
     line (n,) in the window; offset (n, 3) is I, J, K; named (n, 3): which of X, Y, Z stand there;
+    turned (n,): so does a rotary axis;
     absolute (n,): the centre itself is given; inch (n,): the block is in inches; way (n, 3): its
     distances along X, Y, Z where it is in G91.
     """
@@ -34,6 +38,7 @@ class ArcWords:
     radius: Floats
     turns: Floats
     named: Flags
+    turned: Flags
     absolute: Flags
     inch: Flags
     way: Floats
@@ -102,6 +107,7 @@ class _Part:
         findings: Findings,
     ) -> None:
         self.first, self.second, self.normal = plane.axes
+        self.plane = plane.name
         self.words = words
         self.start = start
         self.unknown = unknown
@@ -146,8 +152,8 @@ class _Part:
             hint="begin with a line to a known point, or say "
             f"start = {{ {'XYZ'[self.first]} = ..., {'XYZ'[self.second]} = ... }} in [input]",
         )
-        nothing = self.rule.third_is_zero & (self.words.offset[:, self.normal] == 0)
-        across = has[:, self.normal] & ~(in_plane & (self.rule.drops_third | nothing))
+        nothing = (self.rule.third == "zero") & (self.words.offset[:, self.normal] == 0)
+        across = has[:, self.normal] & ~(in_plane & ((self.rule.third == "dropped") | nothing))
         self._refuse(
             across,
             "GX304",
@@ -172,9 +178,25 @@ class _Part:
             "GX303",
             "an absolute centre (G90.1) needs both of its words",
         )
-        if self.dialect.arc_rule.circle_needs_axis_word:
-            named = self.words.named[:, self.first] | self.words.named[:, self.second]
+        if self.plane not in self.rule.planes:
+            every = np.ones(len(self.a), np.bool_)
+            self._refuse(every, "GX302", f"{self.dialect.name} has no arcs in {self.plane}")
+        if not self.rule.turns_axes:
+            message = f"how {self.dialect.name} turns an axis beside an arc is not certain"
+            self._refuse(self.words.turned, "GX302", message, hint="turn it in a block of its own")
+        self._refuse_circles()
+
+    def _refuse_circles(self) -> None:
+        """Refuse circles that name axes of their plane, or none, where the control wants it so."""
+        named = self.words.named[:, self.first] | self.words.named[:, self.second]
+        if self.rule.circle == "some":
             self._refuse(~named, "GX303", "the arc names no axis of its plane")
+        elif self.rule.circle == "none":
+            closed = np.hypot(*(self.b - self.a).T) < CLOSED * np.hypot(
+                *(self.a - self._from_offsets()).T
+            )
+            message = f"{self.dialect.name} cuts a full circle only without the axes of its plane"
+            self._refuse(named & closed, "GX303", message, hint="leave them out, if one is meant")
 
     def _from_offsets(self) -> Floats:
         """Return centres given by I, J, K (n, 2)."""

@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH
+from gcxform.dialect.dialect import INCH, ROTARY
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.shifted import Shifted
@@ -394,6 +394,7 @@ class Moves:
             column("R") * scale,
             column(self.dialect.arc_rule.turns),
             np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
+            np.any([~np.isnan(column(a)) for a in ROTARY], axis=0),
             self.modes.absolute_centre[lines],
             self.modes.inch[lines],
             ways(self.track, lines),

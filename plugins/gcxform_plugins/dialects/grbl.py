@@ -75,11 +75,11 @@ class Grbl(gx.Dialect):
         comments="(;",
         acts_anywhere="!?~\x18" + "".join(map(chr, range(0x80, 0x100))),
     )
-    block_rule = gx.BlockRule(words="FIJKLNPRST", axis_words_once=True, g80_beside_motion=False)
+    block_rule = gx.BlockRule(words="FIJKLNPRST", one_action="axes", g80_beside_motion=False)
     feed_rule = gx.FeedRule(arcs_in_time=False)
     motion_rule = gx.MotionRule(g28_without_axes=True, g53_in_g91="absolute")
     arc_rule = gx.ArcRule(
-        absolute=0.005, relative=0.001, largest=0.5, circle_needs_axis_word=True, drops_third=True
+        absolute=0.005, relative=0.001, largest=0.5, circle="some", third="dropped"
     )
     offset_rule = gx.OffsetRule(
         known_at_start=True,

@@ -190,7 +190,7 @@ class LinuxCNC(gx.Dialect):
     block_rule = gx.BlockRule(
         words="DEFHIJKLNPQRST@^$",
         number_first=True,
-        axis_words_once=True,
+        one_action="axes",
         most_m_words=4,
         m_first=True,
         spindle_words=frozenset({"S", "M3", "M4", "M5", "M19", "M51", "G95", "G96", "G97"}),

@@ -71,5 +71,5 @@ class Marlin(gx.Dialect):
     point_rule = gx.PointRule(dwell={"P": 0.001, "S": 1.0})
     numbers = gx.NumberFormat(mm=5, inch=6)
     motion_rule = gx.MotionRule(g28_without_axes=True)
-    arc_rule = gx.ArcRule(planes=frozenset({"XY"}), drops_third=True)
+    arc_rule = gx.ArcRule(planes=frozenset({"XY"}), third="dropped")
     offset_rule = gx.OffsetRule(known_at_start=True, g10_offsets=())

@@ -76,7 +76,7 @@ class GrblHAL(Grbl):
         telling_comments=("MSG,",),
     )
     block_rule = replace(Grbl.block_rule, words="DEFHIJKLNPQRST")
-    arc_rule = replace(TURNING, circle_needs_axis_word=False, drops_third=False)
+    arc_rule = replace(TURNING, circle="", third="")
     offset_rule = replace(OFFSETS, g10_tools=frozenset((1, 10, 11)))
     tool_rule = replace(Grbl.tool_rule, g49_takes_axes=False, lengths_aside=True)
 

@@ -139,7 +139,7 @@ class Uccnc(Mach3):
     settings = ()
     text_rule = gx.TextRule()
     point_rule = gx.PointRule(dwell={"P": 0.001})
-    arc_rule = gx.ArcRule(absolute=0.002, third_is_zero=True)
+    arc_rule = gx.ArcRule(absolute=0.002, third="zero")
 
 
 class Masso(Uccnc):
