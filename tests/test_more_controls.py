@@ -37,6 +37,40 @@ def test_two_work_offsets_of_an_okuma():
         said("okuma", "fanuc", OKUMA)
 
 
+APART = [
+    ("okuma", "fanuc", "G15 H1", "cannot say G15"),
+    ("okuma", "linuxcnc", "G15 H1", "cannot say G15"),  # the 15 of others ends polar words
+    ("fanuc", "okuma", "G54", "cannot say G54"),
+    ("linuxcnc", "okuma", "G56", "cannot say G56"),  # there a length
+    ("fanuc", "okuma", "G53 G0 Z0.", "cannot say G53"),  # there the end of a length
+    ("mach3", "okuma", "G54", "cannot say G54"),
+]
+LENGTHS = [("G43 H1", "G56 H1"), ("G43 H1 Z50.", "G56 H1 Z50."), ("G49", "G53")]
+
+
+@pytest.mark.parametrize(("source", "target", "block", "message"), APART)
+def test_work_offsets_and_lengths_of_an_okuma_are_its_own(source, target, block, message):
+    """G15 H1 and G54 are two acts, in tables of their own: nothing says that they are one."""
+    with pytest.raises(gx.GcxformError, match=message):
+        said(source, target, f"G0 X1. Y2. Z3.\n{block}\nG1 X2. F100.\nM2\n")
+
+
+@pytest.mark.parametrize(("block", "there"), LENGTHS)
+def test_a_length_of_an_okuma_has_the_codes_of_work_offsets(block, there):
+    program = "G0 X1. Y2. Z3.\n{}\nG1 X2. F100.\nM2\n".format
+    for other in ("fanuc", "haas", "mach3"):
+        assert said("okuma", other, program(there)) == program(block)
+        assert said(other, "okuma", program(block)) == program(there)
+
+
+def test_a_program_that_says_no_work_offset_names_that_of_its_control():
+    blocks = HEAD + "G0 X1. Y2. Z3.\nM2\n"
+    works = [gx.read(blocks.encode(), name).path.frames[0].work for name in ("okuma", "fanuc")]
+    assert works == ["G15 H1", "G54"]
+    with pytest.raises(gx.GcxformError, match="G54"):
+        _ = gx.read((HEAD + "G54\nG0 X1. Y2. Z3.\n").encode(), "okuma").path
+
+
 def test_a_machine_file_names_them(tmp_path):
     text = 'format = 1\n[work-offset."G15 H2"]\nX = 5.0\nY = 0.0\nZ = 0.0\n'
     (tmp_path / "m.toml").write_text(text)

@@ -219,7 +219,8 @@ def other_in(
 ) -> str:
     """Return what the target cannot say, if a G code means something else there, or nothing."""
     other = target.codes.get(name)
-    if other is None or _what(other) != _what(code):
+    open_dwell = name == "G4" and code.effect is Effect.INERT  # a setting says what it counts
+    if other is None or _what(other) != _what(code) or open_dwell:
         return name
     words = _words_of(meaning) if code.effect is Effect.FRAME else {*code.takes, *other.takes}
     if words & (set(code.takes) ^ set(other.takes)):
@@ -239,9 +240,9 @@ def other_in(
     return ""
 
 
-def _what(code: Code) -> tuple[str, Effect, str, str]:
-    """Return what a code is; of one that is kept the reason too: it may be its control's own."""
-    return code.group, code.effect, code.act, code.reason if code.effect is Effect.INERT else ""
+def _what(code: Code) -> tuple[str, Effect, str]:
+    """Return what a code is."""
+    return code.group, code.effect, code.act
 
 
 def _words_of(meaning: Meaning) -> set[str]:

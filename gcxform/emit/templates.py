@@ -45,7 +45,8 @@ from gcxform.emit.fields import (
 from gcxform.emit.manner import Manner
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
 from gcxform.modal.meaning.printed import is_output
-from gcxform.modal.meaning.sorting import drops_move, program_number_fits
+from gcxform.modal.meaning.sorting import program_number_fits
+from gcxform.modal.meaning.too_many import drops_move
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, Statement, Word
 

@@ -41,8 +41,8 @@ MUTATIONS = (
     Mutation(
         "controls: a dwell of an open unit is that of others",
         "gcxform/emit/expressible.py",
-        'code.reason if code.effect is Effect.INERT else ""',
-        '""',
+        'name == "G4" and code.effect is Effect.INERT',
+        "False",
         TWO,
     ),
     Mutation(

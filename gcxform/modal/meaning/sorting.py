@@ -32,7 +32,7 @@ from gcxform.modal.meaning.numbered import (
 )
 from gcxform.modal.meaning.percent import behind_percent, is_dropped
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
-from gcxform.modal.meaning.too_many import too_many
+from gcxform.modal.meaning.too_many import drops_move, too_many
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
@@ -352,15 +352,6 @@ def _bars_comp(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
     before = [name for name, group in sorted_codes if group in rule.before]
     after = [name for name, group in sorted_codes if group in rule.after and name != "G4"]
     return "".join(before[:1]), "".join(after[:1])
-
-
-def drops_move(meaning: Meaning, dialect: type[Dialect]) -> str:
-    """Return a code beside which a control leaves out the move of the block, or nothing."""
-    name = meaning.groups.get("non-modal", "")
-    machine = name in dialect.codes and dialect.codes[name].act == "machine"
-    if dialect.block_rule.one_action != "all" or machine:
-        return ""
-    return name if "motion" in meaning.groups or meaning.axes else ""
 
 
 def _number_first(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:

@@ -1,11 +1,11 @@
-"""Blocks with more words, or more commands, than a control takes in one."""
+"""Blocks with more words, more commands, or more to do, than a control takes in one."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from gcxform.dialect.dialect import Dialect
-from gcxform.modal.meaning.meaning import Refusal
+from gcxform.modal.meaning.meaning import Meaning, Refusal
 from gcxform.syntax.shapes import Shape
 
 
@@ -22,3 +22,12 @@ def too_many(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
         if most:
             message = f"{dialect.name} takes {most} M words in a block"
             yield Refusal("GX219", word.start, word.end - word.start, message)
+
+
+def drops_move(meaning: Meaning, dialect: type[Dialect]) -> str:
+    """Return a code beside which a control leaves out the move of the block, or nothing."""
+    name = meaning.groups.get("non-modal", "")
+    machine = name in dialect.codes and dialect.codes[name].act == "machine"
+    if dialect.block_rule.one_action != "all" or machine:
+        return ""
+    return name if "motion" in meaning.groups or meaning.axes else ""

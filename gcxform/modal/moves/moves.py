@@ -378,7 +378,6 @@ class Moves:
     def _arc_words(self, lines: Ints) -> ArcWords:
         """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
         scale = np.where(self.modes.inch[lines], INCH, 1.0)
-
         arcs = np.zeros(self.lines.live, np.bool_)
         arcs[lines] = True
 

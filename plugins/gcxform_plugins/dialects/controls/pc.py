@@ -40,13 +40,7 @@ UNIT = "it changes the unit on some controls, and cuts on others"
 POCKET = "it cuts a pocket in a way of its own"
 SEMICOLON = ("gcxform_grammars", "centroid")
 COMP = {code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")}
-UNIT_OPEN = "a setting says what P counts"
 DWELL_UNIT = "P counts seconds or milliseconds, as a setting says (post): it stays as it is"
-
-
-def open_dwell(name: str) -> gx.Code:
-    """Return a dwell that stays as it is, and on no other control is the same."""
-    return replace(v.inert("non-modal", "P"), reason=f"{UNIT_OPEN} of {name}")
 
 
 def cycles(*numbers: int) -> Mapping[str, gx.Code]:
@@ -74,7 +68,7 @@ class Mach3(gx.Dialect):
         **{code: v.barrier("non-modal", POCKET, "I") for code in ("G12", "G13")},
         **{code: v.barrier("non-modal", v.TRANSFORM) for code in ("G15", "G16", "G50", "G51")},
         **{code: v.barrier("non-modal", v.TRANSFORM, "RI") for code in ("G68", "G69")},
-        "G4": open_dwell("Mach3"),
+        "G4": v.inert("non-modal", "P"),
         "G95": gx.Code("feed-mode"),
         "G61": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),
@@ -110,7 +104,6 @@ class Mach4(Mach3):
     grammar = SEMICOLON
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **Mach3.codes,
-        "G4": open_dwell("Mach4"),
         "G65": v.barrier("non-modal", v.CALL, "ABCDEFHIJKLMPQRSTXYZ"),
         "G54.1": v.barrier("frame", "posts for it write G59 P", "P"),
     }
@@ -150,7 +143,7 @@ class Masso(Uccnc):
     grammar = Mach3.grammar
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
-        "G4": open_dwell("Masso"),
+        "G4": Mach3.codes["G4"],
         "G28": Mach3.codes["G28"],
         **cycles(84),
     }

@@ -1,9 +1,11 @@
-"""A control that gcxform has not, as a table in a module of its own, written by the guide alone."""
+"""Controls as tables in a distribution of their own, written by the guide alone."""
 
 import gcxform as gx
 from gcxform_controls.carbide import Carbide
+from gcxform_controls.mach import Mach
+from gcxform_controls.osp import Osp
 
 
 @gx.hookimpl
 def gcxform_dialects() -> list[type[gx.Dialect]]:
-    return [Carbide]
+    return [Carbide, Mach, Osp]
