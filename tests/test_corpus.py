@@ -25,7 +25,6 @@ PLACES = {"lddm": ROOT / "examples" / "lddm" / "model.toml"}
 LONGEST_PAGE = 60
 
 ELSEWHERE = {
-    "GX228": "test_lookup.py",  # a warning
     "GX229": "test_assumptions.py",  # a warning
     "GX241": "test_stamps.py",
     "GX242": "test_stamps.py",
