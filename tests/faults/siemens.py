@@ -650,6 +650,20 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/spelled-otherwise]",
     ),
     Mutation(
+        "siemens: a program that was changed is taken for the one that was read",
+        "gcxform/pipeline/written_back.py",
+        'return same and b"".join(self.given.windows()) == folded.text',
+        "return same",
+        "tests/test_klartext_spelled.py",
+    ),
+    Mutation(
+        "siemens: what is the same text is taken for kept in other modes",
+        "gcxform/proof/respelled.py",
+        "    if blocks == source.text.splitlines():\n",
+        "    if blocks:\n",
+        f"{CASES}[dialects/siemens/kept-in-steps]",
+    ),
+    Mutation(
         "siemens: VAR is a copy",
         "plugins/gcxform_plugins/dialects/siemens/calls.py",
         "        return cell\n\n    def _own(",
