@@ -75,4 +75,4 @@ def test_a_drawn_program_means_the_same_there(source):
             found = shop.differs(done(source, pair[0]), done(target, pair[1]))
             assert found is None, f"{target}: {found}\n{pair[0]}\n{pair[1]}"
             compared += 1
-    assert compared >= len(pairs) or not rs274.available(), "nearly all was refused"
+    assert compared >= len(pairs) // 2 or not rs274.available(), "nearly all was refused"

@@ -27,6 +27,7 @@ from gcxform.toolpath.path import Toolpath
 from gcxform.values import dataclass
 
 QUARTER, REST = pi / 2, 3 * pi / 2
+PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 MODES = ("G21", "G90", "G94", "G17", "G40", "G80", "G91.1")
 START = "X10. Y20. Z5."
 OFFSETS = {f"G{54 + n}": {"X": 100.0 * n, "Y": 0.0, "Z": 0.0} for n in range(6)}
@@ -155,7 +156,7 @@ def _here(dialect: type[Dialect], fact: Fact) -> str:
     for word in fact.blocks.replace("\n", " \n ").split(" "):
         if word.startswith("G"):
             word = _code_here(dialect, word)
-            if not word:
+            if not word or _cuts_not(dialect, word, words):
                 return ""
         elif _lacks(dialect, word, words):
             return ""
@@ -169,6 +170,12 @@ def _lacks(dialect: type[Dialect], word: str, before: list[str]) -> bool:
         return "R" not in dialect.block_rule.words
     home = word.startswith("P") and before[-1:] == ["G30"]
     return home and "P" not in dialect.codes["G30"].takes
+
+
+def _cuts_not(dialect: type[Dialect], word: str, before: list[str]) -> bool:
+    """Whether a code is an arc in a plane where a dialect has none."""
+    plane = next((PLANES[code] for code in reversed(before) if code in PLANES), "XY")
+    return word in ("G2", "G3") and plane not in dialect.arc_rule.planes
 
 
 def _code_here(dialect: type[Dialect], name: str) -> str:
