@@ -165,6 +165,9 @@ def slow(here: Path) -> Path:
     return here / "slow.nc"
 
 
+WORKERS = 3  # that of the program, that of what was written, and the proof
+
+
 def begun(here: Path, program: Path) -> tuple[subprocess.Popen[bytes], list[int]]:
     """Start a run; return it, and its workers once there are any."""
     command = [sys.executable, "-m", "gcxform.cli", "run", "-q", "-p", "job.toml", "-o", "out.nc"]
@@ -173,7 +176,7 @@ def begun(here: Path, program: Path) -> tuple[subprocess.Popen[bytes], list[int]
     deadline = time.monotonic() + 30
     while time.monotonic() < deadline and run.poll() is None:
         found = [int(pid) for pid in children.read_text().split()]
-        if len(found) == 2:
+        if len(found) == WORKERS:
             time.sleep(0.3)  # they are at work
             return run, found
         time.sleep(0.01)

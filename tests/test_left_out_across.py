@@ -96,7 +96,6 @@ def test_a_way_home_of_all_axes_names_them_where_it_has_to(target, block, expect
 MODALS = [
     ("G41 G1 X1. F100.", "grbl", 'put the pass "cutter-comp" before'),
     ("G10 L2 P2 X1. R30.", "grbl", 'put the pass "offsets" before'),
-    ("G5.1 X1. Y1. I1. J0.", "fanuc", "segment"),
     ("G96 S100 D1000", "grbl", 'drop = ["G96"]'),
 ]
 

@@ -37,8 +37,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Only a subprogram, which nothing in this file calls",
         "What is transformed is what the control executes when it runs this file. A subprogram "
         "that nothing in the file calls is not executed, so it would be left as it is, and what it "
-        "does depends on who calls it. Transform the program that calls it: subprograms are looked "
-        "up in the files beside it. Such subprograms are kept as they stand, with those that they "
+        "does depends on who calls it. Transform the program that calls it, for subprograms are "
+        "looked up in the files beside it; others are kept as they stand, with those that they "
         "call, and where all is written out behind the end; the certificate says how many. Where a "
         "step turns positions into others (volumetric, rtcp), a file is refused in which nothing "
         "else moves, and so is a second program that moves, in a file of a control that runs "

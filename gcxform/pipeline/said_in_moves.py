@@ -4,7 +4,7 @@ Canned cycles that it has not become their moves, and ways home to another kind 
 moves in the machine, where it is known where home is. A compensation finds the moves of all cycles:
 the errors of a machine on the way down a hole are others than where it begins.
 
-Splines that it has not become lines within `CHORD_ERROR` of them, before the first step, unless one
+Splines that it has not become lines within `CHORD_ERROR` of them, behind the same steps, unless one
 of the steps makes lines of them by an error that it was given.
 """
 
@@ -84,11 +84,11 @@ def said_in_moves(
     They become so behind the last of the steps that prove their paths by what they were given;
     `done` is how many have been run.
     """
+    if done != resolved(plan.path_passes):
+        return path
     if plan.chord_error and path.has_splines:
         with placing(window, file):
             path = _straight(path, plan.chord_error)
-    if done != resolved(plan.path_passes):
-        return path
     path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
     whole = compensates(plan.path_passes)
     if not (foreign or whole) or not (path.form == Form.CYCLE).any():

@@ -135,16 +135,19 @@ class TextRun:
         return new
 
     def _check_limits(self, step: TextPass, old: str, new: str, where: Location) -> None:
-        """Refuse blocks and sequence numbers that have become larger than the control takes."""
+        """Refuse blocks and sequence numbers that are new, and that the control does not take."""
         size = without_blanks if self.dialect.text_rule.length_without_blanks else len
         long, limit = size(new.encode("latin-1")), self.dialect.text_rule.line_length
         if limit and long > max(limit, size(old.encode("latin-1"))):
             message = f"{step.name}: the block would have {long} characters"
             message += f"; {self.dialect.name} takes {limit}"
             raise InputError.one("GX502", message, where)
-        most = self.dialect.text_rule.largest_number
-        for word in self.dialect.load_grammar().parse(new).words if most else ():
+        most, none = self.dialect.text_rule.largest_number, "N" not in self.dialect.block_rule.words
+        for word in self.dialect.load_grammar().parse(new).words if most or none else ():
             number = word.value
+            if word.address == "N" and none:
+                message = f"{step.name}: {self.dialect.name} has no word N"
+                raise InputError.one("GX201", message, where)
             if word.address == "N" and isinstance(number, Number) and number.value > most:
                 message = f"{step.name}: the sequence number is larger than {most}"
                 raise InputError.one("GX219", message, where)

@@ -13,6 +13,20 @@ ACROSS = "tests/test_corpus.py::test_case"
 
 MUTATIONS = (
     Mutation(
+        "saying: splines are lines before the step that is proved by them",
+        "gcxform/pipeline/said_in_moves.py",
+        "if done != resolved(plan.path_passes):",
+        "if done > resolved(plan.path_passes):",
+        "tests/test_corpus.py::test_case[splines/behind-cutter-comp]",
+    ),
+    Mutation(
+        "text passes: a control without sequence numbers gets them",
+        "gcxform/pipeline/text_passes.py",
+        'if word.address == "N" and none:',
+        'if word.address == "N" and word is none:',
+        "tests/test_corpus.py::test_case[printers/renumber-no-numbers]",
+    ),
+    Mutation(
         "saying: a slash is kept that another control asks a switch for",
         "gcxform/emit/manner.py",
         "return one.block_delete == other.block_delete",
