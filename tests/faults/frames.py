@@ -183,11 +183,11 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/tool-table]",
     ),
     Mutation(
-        "frames: G10 L20 is the same everywhere",
+        "frames: another control stands where this one does",
         "gcxform/pipeline/plan.py",
         "crosses=not same",
         "crosses=False",
-        "tests/test_corpus.py::test_case[dialects/across/more-offsets-set]",
+        "tests/test_corpus.py::test_case[dialects/across/preset-behind-change]",
     ),
     Mutation(
         "frames: G10 of a tool is the same in G91",
