@@ -272,3 +272,10 @@ def test_codes_that_set_zeros_by_words_that_both_take(source, target, block):
 
 def test_a_word_that_one_of_them_takes_is_refused():
     assert refused("linuxcnc", "grbl", "G10 L2 P2 X1. R30.\nG0 X5.").code == "GX501"
+
+
+@pytest.mark.parametrize("target", ["fanuc", "haas"])
+def test_a_zero_that_is_turned_is_folded_away(target):
+    found = refused("linuxcnc", target, "G10 L2 P2 X0. Y0. R45.")
+    assert (found.code, found.where.line) == ("GX213", 2)
+    assert found.hint == 'put the pass "offsets" before'

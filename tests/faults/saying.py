@@ -9,7 +9,7 @@ LEFT = "tests/test_left_out_across.py::"
 LENGTHS = "tests/test_lengths_across.py::"
 HERE = "tests/test_said_otherwise.py"
 
-ACROSS = "tests/test_corpus.py::test_case"
+ACROSS = "tests/test_corpus.py::test_case[dialects/across"
 
 MUTATIONS = (
     Mutation(
@@ -31,56 +31,56 @@ MUTATIONS = (
         "gcxform/emit/manner.py",
         "return one.block_delete == other.block_delete",
         "return True",
-        ACROSS,
+        f"{ACROSS}/slash-executed]",
     ),
     Mutation(
         "saying: blocks that are skipped are written for another control",
         "gcxform/emit/copying.py",
         "self.lines &= ~skipped",
         "self.lines |= skipped",
-        ACROSS,
+        f"{ACROSS}/slash-skipped]",
     ),
     Mutation(
         "saying: G10 L20 of another control is as good",
         "gcxform/emit/zeros_said.py",
         "if kind == 20 and one.g10_l20 != other.g10_l20:",
         "if kind == 20 and False:",
-        ACROSS,
+        f"{ACROSS}/more-offsets-set]",
     ),
     Mutation(
         "saying: P0 of G10 is the same everywhere",
         "gcxform/emit/zeros_said.py",
         "if kind == 2 and not number > 0 and one.g10_p0 != other.g10_p0:",
         "if kind == 2 and number > 9:",
-        ACROSS,
+        f"{ACROSS}/zero-of-all]",
     ),
     Mutation(
         "saying: G92 counts from where a tool change has left the axes",
         "gcxform/modal/frames/work_offsets.py",
         "moved = asked.reading.crosses and asked.lost >> asked.column(state, axis) & 1",
         "moved = False",
-        ACROSS,
+        f"{ACROSS}/preset-behind-change]",
     ),
     Mutation(
         "saying: G10 L20 counts from where a tool change has left the axes",
         "gcxform/modal/frames/work_offsets.py",
         "if np.isnan(here[k]) and asked.reading.crosses:",
         "if False:",
-        ACROSS,
+        f"{ACROSS}/zero-behind-change]",
     ),
     Mutation(
         "saying: what a machine file says of a tool change is not heard",
         "gcxform/modal/meaning/sorting.py",
         'own = code.group in ("user", "tool")',
         'own = code.group == "user"',
-        ACROSS,
+        f"{ACROSS}/change-that-stays]",
     ),
     Mutation(
         "saying: R of G10 turns on every control",
         "gcxform/emit/zeros_said.py",
         'if kind == 2 and takes and "R" in slots and one.g10_rotates != other.g10_rotates:',
         "if kind > 20:",
-        ACROSS,
+        f"{HERE}::test_a_zero_that_is_turned_is_folded_away",
     ),
     Mutation(
         "saying: an exact path stands for an exact stop",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 SPLINES = "tests/test_corpus.py::test_case"
+BY_LINES = "tests/test_corpus.py::test_windows_make_no_difference"
 SPLINE_LAWS = "tests/properties/test_splines.py"
 
 MUTATIONS = (
@@ -44,7 +45,7 @@ MUTATIONS = (
                 "gcxform/modal/moves/nurbs.py",
                 'first = self._value("P", opens) if alone else 1.0',
                 "first = 1.0",
-                SPLINES,
+                f"{SPLINES}[splines/nurbs-other-dialect]",
             ),
             (
                 "the order is always 3",
@@ -65,21 +66,21 @@ MUTATIONS = (
                 "gcxform/modal/moves/tilted_arcs.py",
                 "ONE_CIRCLE = 1e-6",
                 "ONE_CIRCLE = 1e6",
-                "tests/test_corpus.py::test_case",
+                f"{SPLINES}[splines/tilted-two-circles]",
             ),
             (
                 "weights do not count in tangents",
                 "gcxform/toolpath/nurbs.py",
                 "slope[:, -1:] * place",
                 "0.0 * place",
-                SPLINES,
+                f"{SPLINES}[splines/nurbs-other-dialect]",
             ),
             (
                 "a spline of weights is divided by windows",
                 "gcxform/pipeline/whole_cuts.py",
                 "texts = _divided(texts, _last_spline)",
                 "pass",
-                SPLINES,
+                f"{BY_LINES}[splines/nurbs-other-dialect]",
             ),
             (
                 "half as many chords",
