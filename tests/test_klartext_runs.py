@@ -18,7 +18,22 @@ START = {"X": 0.0, "Y": 0.0, "Z": 5.0}
 BETWEEN = (
     *("L IX+1 Y+2", "CC X+0 Y+0", "CC IX+3 IY+4", "C X+3 Y+4 DR+", "L X+3 R0", "L Y+2,5 FMAX"),
     *("L X+1 Y+1 RL F200", "L Y+3 R0", "L X+0 FMAX M3", "TOOL CALL 2 Z S500", "l x+1 y+2", "STOP"),
-    *("M128", "L X+1 ; note 5", "L  X+1", "L X +1", "LBL 0", "L X+1 X+2", "L X+1.Y2", "Q1 = 5"),
+    *(
+        "M128",
+        "L X+1 ; note 5",
+        "L  X+1",
+        "CT X+5 Y+5",
+        "CC X+1",
+        "C X+1 DR+",
+        "CC Y+1 Z+2",
+        "C Y+1 Z+2 DR+",
+        "CR X+1 Y+1 R+5 DR-",
+        "L X +1",
+        "LBL 0",
+        "L X+1 X+2",
+        "L X+1.Y2",
+        "Q1 = 5",
+    ),
     *("L X+Q1", "L X-+5", "L A+5 X+1", "L X+1 F0", "L Z+3 R00", "LP PR+4 PA+30", "L F300", "L"),
     *(
         "CYCL DEF 7.1 X+5",
@@ -29,14 +44,17 @@ BETWEEN = (
         "L X+1.",
     ),
 )
-SHAPES = ("L XV YV", "L XV", "L XV YV ZV", "L XV YV FMAX", "L ZV R0 FMAX", "L YV FV", "L XV R0 FV")
+SHAPES = (
+    *("CC XV YV", "C XV YV DR+", "C XV YV DR-", "C XV YV DR- FV", "CC XV YV", "C XV YV DR+"),
+    *("L XV YV", "L XV", "L XV YV ZV", "L XV YV FMAX", "L ZV R0 FMAX", "L YV FV", "L XV R0 FV"),
+)
 
 
 def drawn(seed):
     """Return a program: runs of few shapes, and between them what may change what they mean."""
     draw, lines = Random(seed), []
     for _ in range(draw.randint(1, 6)):
-        shapes = draw.sample(SHAPES, draw.randint(1, 3))
+        shapes = draw.sample(SHAPES, draw.randint(1, 4))
         for _ in range(draw.randint(1, 12)):
             line = draw.choice(shapes)
             while "V" in line:
@@ -59,6 +77,7 @@ def result(text, stays):
         return str(error)
     state = found.translator
     known = state.place, state.moved, state.feed, state.polar, state.motion, state.lost
+    known += state.pole, state.last, state.plane
     return found.text, found.origin.tolist(), len(set(found.visits.tolist())), known
 
 
@@ -85,3 +104,32 @@ def test_a_run_with_r0_leaves_the_contour():
     found = result(text, False)
     assert isinstance(found, tuple), found
     assert b"G40 X0\n" in found[0]
+
+
+def test_r_of_a_line_is_r0_where_it_says_so():
+    lines = [
+        "CC X+0 Y+0",
+        "L X+1 R0 F200",
+        "L Y+1 R0 F200",
+        "CC X+0 Y+0",
+        "L X+1 R5 F200",
+        "L X+2 R0 F9",
+    ]
+    text = "".join(f"{line}\n" for line in ("BEGIN PGM A MM", *lines, "M2"))
+    assert "a.h:6:1: error[GX203]" in result(text, False)
+
+
+def test_a_run_of_lines_and_circles_ends_where_they_lead():
+    turn = ["L X+5 Y+0 F200", "CC X+0 Y+0", "C X+0 Y+5 DR+", "L Z+1", "L IX+1"]
+    text = "".join(f"{line}\n" for line in ("BEGIN PGM A MM", *turn, "M2"))
+    found = result(text, False)
+    assert isinstance(found, tuple), found
+    assert found[0].decode().split("\n")[1:5] == ["G1 X5 Y0 F200", "G3 X0 Y5 I-5 J0", "G1 Z1", "X1"]
+
+
+def test_a_run_of_lines_ends_where_they_lead():
+    lines = ["L F9", "L X+1", "L Y+1", "STOP", "L X+2", "L Y+3", "L X+2", "L X+9", "L IY+1"]
+    text = "".join(f"{line}\n" for line in ("BEGIN PGM A MM", *lines, "M2"))
+    found = result(text, False)
+    assert isinstance(found, tuple), found
+    assert found[0].endswith(b"X9\nY4\nM2\n")

@@ -98,6 +98,8 @@ class Translator(LineShapes):
     def several(self) -> list[str]:
         """Return the blocks of a run of lines from `line` on, one for each; nothing without one.
 
+        A line without a block has an empty one.
+
         They have to be what `blocks` returns for each of them by itself.
         """
         return []
@@ -184,13 +186,10 @@ class Translator(LineShapes):
             if shape.template and self.plainly:
                 yield self.line, shape.template % (*numbers,)
                 continue
-            run = self.several() if shape.routine else ()
-            for block in run:
-                yield self.line, block
-                self.line, self.at = self.at, self.at + 1
-                self.visit += 1
-            if run:
-                left -= len(run)
+            if shape.routine:
+                before = self.visit
+                yield from self._at_once()
+                left -= self.visit - before
                 shape, numbers = self.shape(self.line)
             for block in self._learnt(shape, numbers):
                 yield self.line, block
@@ -200,6 +199,14 @@ class Translator(LineShapes):
         self.visit += 1
         for block in self.closing():
             yield self.line, block
+
+    def _at_once(self) -> Iterator[tuple[int, str]]:
+        """Yield the blocks of a run of lines, and go on to the line behind them."""
+        for block in self.several():
+            if block:
+                yield self.line, block
+            self.line, self.at = self.at, self.at + 1
+            self.visit += 1
 
     def _learnt(self, shape: Shape, numbers: Sequence[str]) -> Iterable[str]:
         """Return the blocks of a line, as they were learnt where there is something."""

@@ -337,8 +337,8 @@ MUTATIONS = (
         "klartext: runs end nowhere",
         RUNS,
         "            self.place[letter] = number\n",
-        "",
-        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+        "            pass\n",
+        "tests/test_klartext_runs.py::test_a_run_of_lines_ends_where_they_lead",
     ),
     Mutation(
         "klartext: feeds of runs in inches are of mm",
@@ -353,6 +353,20 @@ MUTATIONS = (
         '" R" in text and self.side',
         "False",
         "tests/test_klartext_runs.py::test_a_run_with_r0_leaves_the_contour",
+    ),
+    Mutation(
+        "klartext: circles in runs turn about another place",
+        RUNS,
+        "Decimal(self.pole[axis]) - Decimal(place[axis])",
+        "Decimal(place[axis]) - Decimal(self.pole[axis])",
+        "tests/test_klartext_runs.py::test_a_run_of_lines_and_circles_ends_where_they_lead",
+    ),
+    Mutation(
+        "klartext: R of a line in a run is R0 whatever it says",
+        RUNS,
+        'if plan.off and numbers[plan.first + len(plan.axes)] != "0":',
+        "if not plan:",
+        "tests/test_klartext_runs.py::test_r_of_a_line_is_r0_where_it_says_so",
     ),
     Mutation(
         "klartext: no tolerance is one of 0",

@@ -74,7 +74,7 @@ class Programs(Runs):
             return self._kept(items, found.message)
 
     def _hangs_on_more(self, rapid: bool) -> bool:
-        kept = self.reading.stays and (self.rest_kept or self.modal or self.aside)
+        kept = self.reading.stays and (self.rest_kept or self.modal or self.aside or self.scaled)
         return bool(kept) or super()._hangs_on_more(rapid)
 
     def _check_beside(self, items: Sequence[gx.Item]) -> None:
