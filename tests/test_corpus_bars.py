@@ -18,7 +18,7 @@ LEAST = {
     "fanuc": (34, 8),
     "grbl": (38, 37),
     "haas": (13, 9),
-    "linuxcnc": (128, 86),
+    "linuxcnc": (128, 90),
     "siemens": (54,),
     "heidenhain": (17,),
 }

@@ -33,6 +33,7 @@ class Manner:
     foreign_cycles  the numbers of those that have because the target has not the same
     promised  mm; how far the passes may be off, which a tap may use up
     compensates  positions become commands for a machine with errors, or the other way round
+    curves    whether splines of weights and knots were read as curves, and became lines
     open_place   whether a setting that is not known decides if a cycle drills that names no place
     said      what the user says of codes of the source
     """
@@ -45,6 +46,7 @@ class Manner:
     expands: bool = False
     promised: float = 0.0
     compensates: bool = False
+    curves: bool = False
     open_place: bool = False
     said: Saying | None = None
     foreign_cycles: frozenset[int] = frozenset()

@@ -142,7 +142,7 @@ def _in_moves(task: Task) -> Flags | bool:
 def _of_nurbs(task: Task) -> Flags:
     """Return the lines (live,) of splines of weights and knots that have become lines."""
     points = np.isin(task.read.modes.motion, (NURBS, NURBS_END))
-    return points if task.manner.crossing else np.zeros_like(points)
+    return points if task.manner.curves else np.zeros_like(points)
 
 
 def _special(task: Task, taps: Taps) -> Flags:

@@ -179,6 +179,8 @@ class Taps:
             if apart > EXACT:
                 self._refuse(line, "repeats of one tap would have to go to several places")
             holes = holes[:1]
+        elif len(holes) > 1 and holes[0].moves > MOVES_TO_R:
+            self._refuse(line, "repeats of a tap that rises to R would rise in blocks of their own")
         self.lines[line], self.count[line] = True, len(holes)
         for hole in holes:
             self._begin(hole.row)

@@ -67,6 +67,8 @@ class Reading:
     tables_stay   whether a G10 may be read that writes into the control's tool table: its block
                   stays as it is, on the same control
     crosses       whether the program is to be written for another control
+    curves        whether lines are to be written for curves that this control has and paths have
+                  not, splines of weights and knots and tilted arcs: they are read as such curves
     stays         whether it is to be written for the same one by passes that keep positions: then
                   what is not understood may stay as it stands
     modes_count   whether what is written depends on units, plane and feed mode: not where words of
@@ -93,6 +95,7 @@ class Reading:
     open_pecks: bool = False
     tables_stay: bool = True
     crosses: bool = False
+    curves: bool = False
     stays: bool = False
     modes_count: bool = False
     subprograms: tuple[Path, ...] = ()

@@ -245,6 +245,7 @@ class Plan:
             self.words,
             self.decimals,
             expands_cycles(self.path_passes),
+            curves=self.machine_reading.curves,
             said=self.saying,
             foreign_cycles=foreign_cycles(self.source, self.target),
         )
@@ -284,7 +285,8 @@ class Plan:
         counts |= any(METRIC in step.ensures for step in self.path_passes)
         stays = self._writes_back() and not self.copies
         reading = replace(reading, open_pecks=open_pecks, tables_stay=tables_stay)
-        return replace(reading, crosses=not same, stays=stays, modes_count=counts)
+        curves = not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)
+        return replace(reading, crosses=not same, curves=curves, stays=stays, modes_count=counts)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.
@@ -377,10 +379,7 @@ class Plan:
         return self.limit(inch, compensated, arcs) - sum(step.promise for step in proved)
 
     def angle_limits(self, written: bool = False) -> dict[str, float]:
-        """Return how far (deg) rotary axes may be off: what steps promise, and the rounding.
-
-        `written`: beside the path that passes have proved.
-        """
+        """Return how far (deg) rotary axes may be off; `written`: beside what passes proved."""
         steps = self.path_passes[resolved(self.path_passes) if written else 0 :]
         promised = sum(step.demands.promise_angle for step in steps)
         return {a: promised + 1.01 * self.manner.step(a, False) for a in ROTARY}

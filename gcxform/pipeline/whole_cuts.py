@@ -22,7 +22,7 @@ COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 def undivided(texts: Iterator[bytes], plan: Plan) -> Iterator[bytes]:
     """Yield texts of whole lines that divide nothing that a plan has to see as a whole."""
     demands = [step.demands for step in plan.path_passes]
-    if plan.source is not plan.target and "G5.2" in plan.source.codes:
+    if plan.machine_reading.curves and "G5.2" in plan.source.codes:
         texts = _divided(texts, _last_spline)
     if any(each.resolves for each in demands):
         texts = whole_stretches(texts)

@@ -83,6 +83,20 @@ MUTATIONS = (
                 f"{BY_LINES}[splines/nurbs-other-dialect]",
             ),
             (
+                "a step leaves splines of weights to their own control",
+                "gcxform/pipeline/plan.py",
+                "not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)",
+                "not same",
+                "tests/test_corpus.py::test_case[splines/nurbs-compensated]",
+            ),
+            (
+                "what opens a spline stays on its own control",
+                "gcxform/emit/pieces.py",
+                "return points if task.manner.curves else",
+                "return points if task.manner.crossing else",
+                "tests/test_corpus.py::test_case[splines/nurbs-compensated]",
+            ),
+            (
                 "half as many chords",
                 "gcxform/toolpath/splines.py",
                 "np.sqrt(0.75 * second",

@@ -4,8 +4,8 @@ Each G5.2 with X and Y is a control point, with its weight in P; the first one i
 stands, and its weight is the P of a first block that names no point, or 1. L of the first block is
 the order. The curve is cut at G5.3, inside the hull of its control points, and ends at the last
 one. A path has the legs between them, in a form of their own, so every step leaves them as they are
-or is refused. To be written for another control they are read as cubic Bezier curves instead, as
-many as there are legs or more, which become lines.
+or is refused. For another control, or a step that makes lines, they are read as cubic Bezier curves
+instead, as many as there are legs or more, which become lines.
 
 What LinuxCNC 2.9 refuses is refused, and so is what it does otherwise than one would think (G91
 counts all points from the first), or at another moment (words beside them act before the curve is
@@ -147,8 +147,8 @@ class Nurbs:
     # --- as curves ---
 
     def as_beziers(self, path: Toolpath) -> Toolpath:
-        """Return a path for another control, with Bezier curves in place of legs."""
-        if not (self.whole and self.source.reading.crosses) or self.source.findings.found:
+        """Return a path of which lines are to be made, with Bezier curves in place of legs."""
+        if not (self.whole and self.source.reading.curves) or self.source.findings.found:
             return path
         counts = np.ones(len(path), np.int64)
         parts: list[tuple[int, Floats]] = []

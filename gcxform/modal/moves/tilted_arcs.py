@@ -5,9 +5,9 @@ equal angles, so that the arc stays inside of the hull of its legs. The block st
 is refused. On two circles (start and end radius differ) the larger one counts. That a control cuts
 such arcs was executed with LinuxCNC 2.9, whose work offsets turn; on others they are refused.
 
-To be written for another control an arc on one circle is read as cubic Bezier curves instead, which
-become lines: over the angle a they have tangents of r 4/3 tan(a/4), and for a up to `SMALL` are off
-the arc by no more than 1e-9 r.
+For another control, or a step that makes lines, an arc on one circle is read as cubic Bezier curves
+instead, which become lines: over the angle a they have tangents of r 4/3 tan(a/4), and for a up to
+`SMALL` are off the arc by no more than 1e-9 r.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def with_legs(path: Toolpath, lines: Lines) -> Toolpath:
     rows = rows[~unsure & np.isfinite(path.centre[rows]).all(axis=1)]
     if not len(rows):
         return path
-    curves = _curves if lines.reading.crosses else _legs
+    curves = _curves if lines.reading.curves else _legs
     parts = [curves(path, row) or _legs(path, row) for row in rows.tolist()]
     counts = np.ones(len(path), np.int64)
     counts[rows] = [len(each.ends) for each in parts]

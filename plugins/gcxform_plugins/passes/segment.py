@@ -27,7 +27,8 @@ class Segment(gx.Pass):
     With `arcs = "lines"` arcs become chords that stay within `chord-error` of the arc and turn by
     at most 90 degrees each; with `arcs = "split"` they stay G2 and G3. `max-length` limits lines
     and chords, `arc-step` the angle of the pieces of an arc. Rapids are never cut. Splines become
-    lines within `chord-error` and no longer than `max-length`; with `arcs = "split"` they stay.
+    lines within `chord-error` and no longer than `max-length`, and so do those of weights and knots
+    (G5.2) and arcs out of the planes of the axes; with `arcs = "split"` they stay.
     """
 
     name = "segment"
