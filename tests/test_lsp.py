@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import random
+import statistics
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,11 @@ import pytest
 pytest.importorskip("pygls", reason="pygls is not installed")
 
 from lsp_kit import Editor, put
+from seeds_kit import LONG
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "benchmarks"))
+
+import lsp
 
 TEXT = """%
 O1000 (ÄÖ𝄞)
@@ -157,3 +165,17 @@ def test_bad_questions_do_not_end_it(editor: Editor) -> None:
     editor.about("formatting", uri, options={"tabSize": 4, "insertSpaces": True})
     assert editor.about("documentSymbol", editor.uri("nowhere.nc")) == []
     editor.findings(uri, 2)
+
+
+@pytest.mark.parametrize("name", [*lsp.PROGRAMS][:-1] if LONG else ["flow"])
+def test_a_key_in_ten_thousand_lines_is_answered_in_time(name: str) -> None:
+    """What the processor takes: `benchmarks/lsp.py` has the clock, and more programs."""
+    make, pipeline = lsp.PROGRAMS[name]
+    lines = make(10_000, random.Random(17))
+    kinds = () if LONG else ("a key in the middle", "half a block")
+    took = {
+        f"{what}: {answer}": statistics.median(cpu for _, cpu in times)
+        for what, answer, times in lsp.answered(lines, pipeline, 1, kinds)
+    }
+    assert len(took) == 3 * (len(kinds) or 6)
+    assert {what: each for what, each in took.items() if each > lsp.BAR} == {}

@@ -214,6 +214,13 @@ def speaks_against_reading(
     except InputError as error:
         yield from error.diagnostics
         return
+    yield from speaks_against_blocks(pipeline, executed, taken, tables)
+
+
+def speaks_against_blocks(
+    pipeline: Pipeline, executed: Source, taken: list[str], tables: Tables | None = None
+) -> Iterator[Diagnostic]:
+    """Yield what speaks against reading the blocks that a program executes, in its own lines."""
     for diagnostic in reading_findings(pipeline, executed, taken, tables):
         yield from located(InputError((diagnostic,)), executed).diagnostics
 
@@ -242,17 +249,17 @@ def reading_findings(
     ending = Ending(pipeline.source, source.name)
     centres = CentreProof(pipeline.context, source.name)
     stays = not any(step.demands.resolves for step in pipeline.path_passes)
-    refused = False
     for window, reader in windows_of(source, dialect, tables):
         try:
             path = interpreter.interpret(window, reader.table).path
             yield from centres.stops(path) if stays else ()
         except InputError as error:
-            yield from (d for d in error.diagnostics if not refused or d.code in STATELESS)
-            refused = True
+            only = interpreter.only
+            yield from (d for d in error.diagnostics if only is None or d.code in only)
+            interpreter.only = STATELESS
         ending.look(window, reader.table)
     yield from ending.wrong
-    if taken is not None and not refused:
+    if taken is not None and interpreter.only is None:
         taken += assumptions(interpreter, pipeline.source, chosen)
 
 

@@ -8,7 +8,7 @@ is not seen here is refused where it is read.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.oword_names import STANDS
@@ -16,6 +16,7 @@ from gcxform.syntax.source import COMMENT, Source
 
 CODE = re.compile("[GM][0-9]+|T")
 TO_THE_END = re.compile(rb";[^\r\n]*")
+REST = re.compile(rb"[^\r\n]*")
 NUMBERED = rb"(?:N[ \t]*[0-9.]+[ \t]*)?"
 MODES = rb"M[ \t]*0*(?:98|7[0-3])(?![0-9])"
 CALLS = rb"M[ \t]*0*9[789](?![0-9])"
@@ -89,13 +90,25 @@ def has_flow(source: Source, dialect: type[Dialect], control: Mapping[str, str |
     if dialect.flow_rule.macro_levels and aliases(control):
         return True
     signs = [(byte, re.compile(pattern)) for byte, pattern in _cased(dialect)]
-    return any(
-        any(byte in text and pattern.search(text) for byte, pattern in signs)
-        and (
-            PROOFS[dialect.flow_rule.language].search(_without_comments(text, dialect))
-            or (dialect.flow_rule.language == "o-words" and PRINTED.search(text))
-        )
-        for text in source.windows()
+    return any(_flows(text, dialect, signs) for text in source.windows())
+
+
+def _flows(
+    text: bytes, dialect: type[Dialect], signs: Sequence[tuple[bytes, re.Pattern[bytes]]]
+) -> bool:
+    """Whether lines have flow; the line of the first sign mostly says it already."""
+    found = (pattern.search(text) for byte, pattern in signs if byte in text)
+    sign = next((each for each in found if each), None)
+    if sign is None:
+        return False
+    first = max(text.rfind(end, 0, sign.start()) for end in (b"\n", b"\r")) + 1
+    rest = REST.match(text, sign.end())
+    line = text[first : rest.end() if rest else sign.end()]
+    proof = PROOFS[dialect.flow_rule.language]
+    return bool(
+        proof.search(_without_comments(line, dialect))
+        or proof.search(_without_comments(text, dialect))
+        or (dialect.flow_rule.language == "o-words" and PRINTED.search(text))
     )
 
 

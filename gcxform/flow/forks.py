@@ -143,6 +143,8 @@ class Forks:
 
     def refuse_modes(self) -> None:
         """Refuse modes that count where only the machine knows which is in force."""
+        if not self.joins:
+            return
         run, shapes = self.run, np.array(self._shapes(), np.int64)
         if (other := other_modes(run, self.reader.table, shapes, self.joins)) is not None:
             run.line, code = other

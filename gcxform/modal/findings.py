@@ -11,15 +11,20 @@ from gcxform.syntax.shapes import Shape, slots_of
 
 
 class Findings:
-    """Diagnostics about lines of one window."""
+    """Diagnostics about lines of one window.
+
+    `only` are the codes that are asked for, None for all; that there were others is not forgotten.
+    """
 
     enough = 50
+    only: frozenset[str] | None = None
 
     def __init__(self, file: str, window: Window, table: MeaningTable) -> None:
         self.file = file
         self.window = window
         self.table = table
         self.found: list[tuple[int, Diagnostic]] = []
+        self._others = False
 
     def add(
         self,
@@ -31,6 +36,8 @@ class Findings:
         context: str = "",
     ) -> None:
         """Add a finding about a line, pointing at the word with an address if one is given."""
+        if not self._wanted(code):
+            return
         column, width = self._word_at(line, address)
         where = self.location(line, column, width)
         self.found.append((line, Diagnostic(code, message, where, hint, context)))
@@ -79,8 +86,13 @@ class Findings:
         )
         return letter + 1, end - letter
 
+    def _wanted(self, code: str) -> bool:
+        wanted = self.only is None or code in self.only
+        self._others |= not wanted
+        return wanted
+
     def raise_if_any(self) -> None:
-        """Raise InputError with what was found, by line."""
-        if self.found:
+        """Raise InputError with what was found and is asked for, by line."""
+        if self.found or self._others:
             self.found.sort(key=lambda entry: entry[0])
             raise InputError(tuple(diagnostic for _, diagnostic in self.found))

@@ -79,7 +79,12 @@ UNSAID = {EXTRUDER: 0.0}
 
 
 class Interpreter:
-    """Reads the windows of one program in order; `undecided` is what of it the machine decides."""
+    """Reads the windows of one program in order; `undecided` is what of it the machine decides.
+
+    `only` are the codes of findings that are asked for, None for all.
+    """
+
+    only: frozenset[str] | None = None
 
     def __init__(
         self,
@@ -137,6 +142,7 @@ class Interpreter:
         before = replace(self.state, position=self.state.position.copy())
         given = self.file, self.undecided
         lines = Lines(self.dialect, self.reading, self.state, window, table, *given)
+        lines.findings.only = self.only
         lines.refuse_statically()
         compute(lines)
         note_prints(lines)

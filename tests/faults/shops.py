@@ -62,15 +62,15 @@ FAULTS = (
     (
         "what a step goes by is not noted",
         BLIND,
-        "if value]",
-        "if value > 1e9]",
+        "along, found = ways != 0,",
+        "along, found = ways > 1e9,",
         STEPS,
     ),
     (
         "what an arc goes by is not noted",
         BLIND,
-        'if track.modes.motion[line] > 1 else ""',
-        'if track.modes.motion[line] > 3 else ""',
+        "track.modes.motion[lines] > 1)",
+        "track.modes.motion[lines] > 3)",
         STEPS,
     ),
     (

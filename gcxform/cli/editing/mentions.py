@@ -92,9 +92,14 @@ _SECTION: Final = re.compile(
 )
 _COMMENT: Final = re.compile(rb"\([^()]*\)|;.*")
 _NUMBERED: Final = re.compile(rb"[ \t]*(?:/[0-9]?)?[ \t]*N[ \t]*0*([0-9]+)(?![0-9.])")
-_PLAIN: Final = re.compile(rb"[-+. \t0-9NGXYZABCUVWIJKRFQS]*")
+_PLAIN: Final = re.compile(rb"(?![ \t]*\[|.*[A-Z]{2})[-+*=#\[\]. \t0-9NGXYZABCUVWIJKRFQS]*")
 _CYCLE: Final = re.compile(rb"G[ \t]*6[56]")
-"""Lines of such letters name nothing, but for G65 and G66."""
+"""Lines of such letters, one by one, name nothing, but for G65 and G66."""
+_ALONG: Final = re.compile(
+    rb"[ \t]*[0-9]+[ \t]+(?:L|LP|C|CC|CP|CR|CT)(?:[ \t]+(?:I?[XYZABCUVW][-+]?[0-9.]+|"
+    rb"I?P[RA][-+]?[0-9.]+|R(?:[0LR]|[-+]?[0-9.]+)|F(?:MAX|AUTO|[0-9.]+)|DR[-+]))*[ \t]*"
+)
+"""Lines of Klartext that only go somewhere name nothing either."""
 
 
 def name_of(text: bytes) -> str:
@@ -106,13 +111,15 @@ def name_of(text: bytes) -> str:
 def of_line(line: bytes) -> tuple[Mention, ...]:
     """Return what a line defines and names."""
     upper = line.upper()
-    if _PLAIN.fullmatch(upper) and not _CYCLE.search(upper):
+    if _is_plain(upper):
         return ()
     if found := _SECTION.match(upper):
         group = found.lastindex or 1
         words = line[slice(*found.span(group))].decode("utf-8", "replace").strip()
         return (Mention(Kind.SECTION, words, *found.span(group), True),) if words else ()
     bare = _COMMENT.sub(lambda m: b" " * len(m[0]), upper)
+    if bare != upper and _is_plain(bare):
+        return ()
     found_here = [*_found(DEFINED, bare, defines=True), *_found(NAMED, bare, defines=False)]
     if found := _TOOL.search(bare):
         changes = _CHANGE.search(bare) is not None
@@ -122,6 +129,13 @@ def of_line(line: bytes) -> tuple[Mention, ...]:
     elif _CHANGE.search(bare):
         found_here.append(Mention(Kind.TOOL, "", 0, len(line), True))
     return tuple(found_here)
+
+
+def _is_plain(line: bytes) -> bool:
+    """Whether a line, in capitals, cannot name anything: most lines are told so at once."""
+    if _PLAIN.fullmatch(line):
+        return not _CYCLE.search(line)
+    return _ALONG.fullmatch(line) is not None
 
 
 def _found(

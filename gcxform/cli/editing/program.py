@@ -10,20 +10,27 @@ from __future__ import annotations
 
 import copy
 import re
+from collections.abc import Iterator
 from dataclasses import field
 from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from typing import Final, NamedTuple
 
-from gcxform.cli.check import ENOUGH, speaks_against, speaks_against_reading
+from gcxform.cli.check import (
+    ENOUGH,
+    speaks_against,
+    speaks_against_blocks,
+    speaks_against_reading,
+)
 from gcxform.cli.editing.mentions import Mention, Mentions, Symbol, outline
 from gcxform.cli.editing.shop import Found, Shop
 from gcxform.cli.editing.text import Text
 from gcxform.cli.program.block import as_executed, executed, foreign, in_words
 from gcxform.cli.program.tolerant import Tolerant
-from gcxform.diagnostics import Diagnostic, GcxformError
-from gcxform.flow.detection import has_flow
+from gcxform.diagnostics import Diagnostic, GcxformError, InputError
+from gcxform.flow.executed import WrittenOut
+from gcxform.flow.translated import Translated, translated_so_far
 from gcxform.modal.reader import Tables
 from gcxform.modal.state import State
 from gcxform.pipeline.pipeline import Pipeline
@@ -93,10 +100,18 @@ class Program:
             return list(wrong)
         try:
             with self.kept.lock:
-                found = speaks_against_reading(pipeline, self.source(), [], self.kept.tables)
+                found = self._against(pipeline)
                 return [each for _, each in zip(range(ENOUGH), found, strict=False)]
         except GcxformError as error:
             return list(error.diagnostics)
+
+    def _against(self, pipeline: Pipeline) -> Iterator[Diagnostic]:
+        if pipeline.read_as.translator is None:
+            yield from speaks_against_reading(pipeline, self.source(), [], self.kept.tables)
+            return
+        blocks, error = self._translated
+        found = speaks_against_blocks(pipeline, blocks, [], self.kept.tables)
+        yield from found if error is None else error.diagnostics
 
     def checked(self) -> list[Diagnostic] | None:
         """Return what `check` finds, with the passes and the writing; None for a long program."""
@@ -110,20 +125,32 @@ class Program:
 
     # --- what a block does ---
 
+    @cached_property
+    def _translated(self) -> tuple[Translated, InputError | None]:
+        """The blocks of a program in a language of its own, and why there are no more."""
+        pipeline = self.found.pipeline
+        assert pipeline is not None
+        return translated_so_far(self.source(), pipeline.read_as, pipeline.machine_reading)
+
+    @cached_property
+    def _executed(self) -> WrittenOut | None:
+        """The blocks that a program with calls or loops executes."""
+        pipeline = self.found.pipeline
+        assert pipeline is not None
+        return executed(self.source(), pipeline.read_as, pipeline.machine_reading)
+
     def explained(self, number: int) -> list[str]:
         """Return what a line, from 0, does, in words; nothing for one that is not there."""
         pipeline = self.found.pipeline
         if pipeline is None or not (0 <= number < len(self.lines) and self.lines[number].strip()):
             return []
-        kind, reading = pipeline.read_as, pipeline.machine_reading
+        asked = number + 1, pipeline.read_as, pipeline.machine_reading, self.kept.tables
         try:
-            if kind.translator is not None:
-                return foreign(self.source(), number + 1, kind, reading)
-            if has_flow(self.source(), kind, reading.control):
-                ran = executed(self.source(), kind, reading)
-                if ran is not None:
-                    return as_executed(self.source(), ran, number + 1, kind, reading)
             with self.kept.lock:
+                if pipeline.read_as.translator is not None:
+                    return foreign(self.source(), self._translated, *asked)
+                if (ran := self._executed) is not None:
+                    return as_executed(self.source(), ran, *asked)
                 return self._plain(pipeline, number)
         except GcxformError as error:
             return [each.message for each in error.diagnostics]

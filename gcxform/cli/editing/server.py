@@ -29,7 +29,7 @@ from gcxform.diagnostics import Diagnostic, GcxformError
 from gcxform.values import dataclass
 from gcxform.version import VERSION
 
-SOON: Final = 0.03  # s from a change to the findings of reading
+SOON: Final = 0.005  # s from a change to the findings of reading
 LATER: Final = 0.7  # s from the last change to those of the whole check
 LONG: Final = 0.25  # s of the processor for reading a program, which is read beside from then on
 TOML: Final = ".toml"

@@ -18,8 +18,9 @@ from gcxform.diagnostics import Diagnostic, InputError, UsageError
 from gcxform.dialect.dialect import INCH, Dialect
 from gcxform.flow.executed import WrittenOut
 from gcxform.flow.straightened import written_out
-from gcxform.flow.translated import translated_so_far
+from gcxform.flow.translated import Translated, translated_so_far
 from gcxform.modal.meaning.tables import GROUPS, code_of
+from gcxform.modal.reader import Tables
 from gcxform.modal.state import Reading, State
 from gcxform.syntax.source import Source
 from gcxform.syntax.tree import Block, Comment, Mark, Number, Word
@@ -45,7 +46,7 @@ def explained(file: str, line: int, dialect: str | None, asked: Mapping[str, Any
     kind, reading = Asked(**asked).reads(needed_dialect(dialect))
     with opened(file) as source:
         if kind.translator is not None:
-            return foreign(source, line, kind, reading)
+            return foreign(source, translated_so_far(source, kind, reading), line, kind, reading)
         if (ran := executed(source, kind, reading)) is not None:
             return as_executed(source, ran, line, kind, reading)
         tolerant = Tolerant(kind, source, reading)
@@ -72,7 +73,12 @@ def executed(source: Source, kind: type[Dialect], reading: Reading) -> WrittenOu
 
 
 def as_executed(
-    source: Source, ran: WrittenOut, line: int, kind: type[Dialect], reading: Reading
+    source: Source,
+    ran: WrittenOut,
+    line: int,
+    kind: type[Dialect],
+    reading: Reading,
+    tables: Tables | None = None,
 ) -> list[str]:
     """Return a line in words as it is executed first, and what stands for it: a call's blocks."""
     own = b"".join(source.windows()).splitlines()
@@ -84,7 +90,7 @@ def as_executed(
     if called:  # of other files, whose lines are counted on behind these
         first, last = _called(own[:line], ran.origin, len(own), kind) or (first, first)
     text = b"".join(ran.windows()).splitlines(keepends=True)
-    tolerant = Tolerant(kind, ran, reading)
+    tolerant = Tolerant(kind, ran, reading, tables)
     tolerant.window(b"".join(text[:first]))
     earlier = sorted({ran.line_of(number) for number in tolerant.refused})
     before = copy.deepcopy(tolerant.interpreter.state)
@@ -98,15 +104,22 @@ def as_executed(
     return [*lines, *_told(before, tolerant.interpreter.axes, earlier, next(wrong, None), path)]
 
 
-def foreign(source: Source, line: int, kind: type[Dialect], reading: Reading) -> list[str]:
+def foreign(
+    source: Source,
+    ran: tuple[Translated, InputError | None],
+    line: int,
+    kind: type[Dialect],
+    reading: Reading,
+    tables: Tables | None = None,
+) -> list[str]:
     """Return a line of a program that is turned into blocks: those, and what they do."""
-    blocks, error = translated_so_far(source, kind, reading)
+    blocks, error = ran
     if line > len(blocks.lines):
         message = f"{source.name} has {len(blocks.lines)} lines and no line {line}"
         raise UsageError.one("GX731", message)
     text = b"".join(blocks.windows()).splitlines(keepends=True)
     first, last = _run_of(line - 1, blocks.origin)
-    tolerant = Tolerant(kind, blocks, reading)
+    tolerant = Tolerant(kind, blocks, reading, tables)
     tolerant.window(b"".join(text[:first]))
     before = copy.deepcopy(tolerant.interpreter.state)
     _, path = tolerant.window(b"".join(text[first:last]))

@@ -8,6 +8,8 @@ more: under cutter compensation, along vectors of the tool, and in another diale
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from gcxform.dialect.dialect import INCH
@@ -61,8 +63,8 @@ def blind_rows(track: Track, rows: Rows) -> Rows:
         here = arcs & (track.modes.plane[rows.line] == plane)
         blind |= here & np.isnan(rows.end[:, plane.axes[:2]]).any(axis=1)
     lines = rows.line[blind]
-    for line, way in zip(lines.tolist(), _ways(track, lines, rows.frame[blind]), strict=True):
-        track.lines.unknown.append(Unknown(line, _said(track, line, way), ""))
+    said = _said(track, lines, _ways(track, lines, rows.frame[blind]))
+    track.lines.unknown += [Unknown(*each, "") for each in zip(lines.tolist(), said, strict=True)]
     if blind.any():
         track.state.assumed.setdefault(KEPT, None)
     form = np.where(blind, np.int8(Form.BLIND), rows.form)
@@ -84,14 +86,13 @@ def note_way(track: Track, line: int) -> None:
         track.lines.unknown.append(Unknown(line, f"{BY}{' '.join(said)}", BY_WAY))
 
 
-def _ways(track: Track, lines: Ints, frames: Ints) -> list[list[float]]:
-    """Return what lines in G91 go by, each in its frame: a number for each axis of the track."""
+def _ways(track: Track, lines: Ints, frames: Ints) -> Floats:
+    """Return what lines in G91 go by (n, axes), each in its frame."""
     found = np.zeros((len(lines), len(track.axes)))
     for number in distinct(frames).tolist():
         here = frames == number
         found[here] = _turned(track, lines[here], track.frames[number])
-    ways: list[list[float]] = found.tolist()
-    return ways
+    return found
 
 
 def _turned(track: Track, lines: Ints, frame: Frame) -> Floats:
@@ -106,12 +107,25 @@ def _turned(track: Track, lines: Ints, frame: Frame) -> Floats:
     return frame.turned(steps)
 
 
-def _said(track: Track, line: int, way: list[float]) -> str:
-    """Return what a move goes by, mm and degrees in positions, and the words of an arc."""
-    parts = [f"{axis}{value:.6f}" for axis, value in zip(track.axes, way, strict=True) if value]
+def _said(track: Track, lines: Ints, ways: Floats) -> list[str]:
+    """Return what moves go by (n, axes), mm and degrees in positions, and the words of arcs."""
+    along, found = ways != 0, [""] * len(lines)
+    kinds = along @ (1 << np.arange(len(track.axes)))
+    for kind in distinct(kinds).tolist():
+        here = np.flatnonzero(kinds == kind)
+        named = np.flatnonzero(along[here[0]])
+        spelled = " ".join(f"{track.axes[axis]}%.6f" for axis in named.tolist())
+        for number, way in zip(here.tolist(), ways[np.ix_(here, named)].tolist(), strict=True):
+            found[number] = spelled % (*way,)
+    for number in np.flatnonzero(track.modes.motion[lines] > 1).tolist():
+        found[number] = " ".join(filter(None, [found[number], *_arc(track, int(lines[number]))]))
+    return [BY + each for each in found]
+
+
+def _arc(track: Track, line: int) -> Iterator[str]:
+    """Yield the words of an arc, in mm."""
     scale = INCH if track.modes.inch[line] else 1.0
-    for address in "IJKR" + track.dialect.arc_rule.turns if track.modes.motion[line] > 1 else "":
+    for address in "IJKR" + track.dialect.arc_rule.turns:
         word = track.lines.word(address)
         if word is not None and word[1][line]:
-            parts.append(f"{address}{word[0][line] * scale:.6f}")
-    return BY + " ".join(parts)
+            yield f"{address}{word[0][line] * scale:.6f}"
