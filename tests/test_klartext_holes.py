@@ -73,6 +73,54 @@ def test_a_cycle_may_be_run_by_two_patterns():
     assert (path.kind == 1).sum() == 12
 
 
+PECKS = "Q200=2 Q201=-15 Q206=100 Q202=6 Q203=+0 Q204=20 Q211=0.5"
+DRILL = f"CYCL DEF 200 DRILLING {PECKS} Q210=0.2"
+DEEP = f"CYCL DEF 205 PECKING {PECKS} Q212={{}} Q205={{}} Q258={{}} Q259={{}} Q257=0 Q256=0.2"
+
+
+def levels(cycle, **control):
+    text = program("L X+1 Y+2 Z+20 FMAX", cycle, "CYCL CALL")
+    path = read(text, tools=TOOLS, control=control)
+    waits = [event.row for event in path.events if event.what == "DWELL"]
+    return list(zip(path.kind.tolist()[1:], path.end[1:, 2].tolist(), strict=True)), waits
+
+
+def test_strokes_go_down_to_over_the_ground():
+    found, waits = levels(DRILL, **{"peck-clearance": 0.5})
+    down = [(0, 2), (1, -6), (0, 2), (0, -5.5), (1, -12), (0, 2), (0, -11.5), (1, -15), (0, 20)]
+    assert found == down
+    assert waits == [4, 7, 9]
+    same = [(kind, round(z, 9)) for kind, z in levels(DEEP.format(0, 0, 0.5, 0.5))[0]]
+    assert same == down
+
+
+def test_strokes_become_shorter():
+    found, _ = levels(DEEP.format(2, 3, 0.5, 0.5))
+    assert [z for kind, z in found if kind] == [-6, -10, -13, -15]
+
+
+@pytest.mark.parametrize(
+    ("cycle", "why"),
+    [
+        (DRILL, "feeds again is not certain"),
+        (DEEP.format(0, 0, 0.5, 0.2), "feeds again is not certain"),
+        (DEEP.format(0, 0, 9, 9), "feeds again is not certain"),
+        (DEEP.format(6, 0, 0.5, 0.5), "several strokes, upwards"),
+        (DEEP.format(0, 0, 0.5, 0.5).replace("Q257=0", "Q257=2"), "chips that are broken"),
+        ("CYCL DEF 202 BORING Q200=2", "a boring bar"),
+        ("CYCL DEF 207 RIGID TAPPING NEU Q200=2", "tied to the spindle"),
+        ("CYCL DEF 208 BORE MILLING Q200=2", "no manual tells"),
+        ("CYCL DEF 262 THREAD MILLING Q335=5", "no manual tells"),
+        ("CYCL DEF 257 CIRCULAR STUD Q223=50", "a stud"),
+        ("CYCL DEF 14.0 CONTOUR", "a contour"),
+        ("CYCL DEF 299 OURS Q1=3", "a cycle of the control"),
+    ],
+)
+def test_what_the_control_does_in_its_way_is_refused_by_name(cycle, why):
+    with pytest.raises(gx.InputError, match=why):
+        levels(cycle)
+
+
 UNIVERSAL = (
     "CYCL DEF 203 UNIVERSAL DRILLING ~",
     "Q200=2 ~",

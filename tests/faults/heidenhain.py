@@ -6,6 +6,7 @@ from faults.mutation import Mutation
 
 LANGUAGES = "plugins/gcxform_plugins/languages"
 CYCLES = "plugins/gcxform_plugins/dialects/heidenhain/cycles.py"
+DATUMS = "plugins/gcxform_plugins/dialects/heidenhain/datums.py"
 LABELS = "plugins/gcxform_plugins/dialects/heidenhain/labels.py"
 MOVES = "plugins/gcxform_plugins/dialects/heidenhain/moves.py"
 SAID = "plugins/gcxform_plugins/dialects/heidenhain/positioning.py"
@@ -36,6 +37,8 @@ DRILLED = "tests/test_klartext_drilled.py"
 APPROACH = "plugins/gcxform_plugins/dialects/heidenhain/approach.py"
 ONTO = "tests/test_klartext_approach.py"
 
+FRAMES = "tests/test_klartext_frames.py"
+TOOL_TESTS = "tests/test_klartext_tools.py"
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
@@ -223,7 +226,7 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: TRANS DATUM and cycle 7 shift together",
-        CYCLES,
+        DATUMS,
         "if match is None or (self.by_cycle and any(map(float, self.shift.values()))):",
         "if match is None:",
         "tests/test_klartext_target.py::test_two_ways_to_shift_a_datum_are_not_mixed",
@@ -489,7 +492,7 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: a step of a shift replaces it",
-        CYCLES,
+        DATUMS,
         "value = exact(Decimal(value) + Decimal(self.shift[axis]))",
         "value = exact(Decimal(value))",
         f"{WRITTEN}::test_a_shift_adds_and_leaves_other_axes",
@@ -608,14 +611,14 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: a shift is added to the one before",
-        CYCLES,
+        DATUMS,
         "new = {axis: known[axis] for axis in LINEAR}",
         "new = {a: exact(Decimal(given.get(a, 0)) + Decimal(old[a])) for a in LINEAR}",
         READ,
     ),
     Mutation(
         "klartext: places keep their numbers under a shift",
-        CYCLES,
+        DATUMS,
         "self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])",
         "self.place[axis] = exact(Decimal(self.place[axis]))",
         f"{TESTS}::test_a_shift_counts_from_the_datum",
@@ -629,10 +632,10 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: a hole in many strokes is one in one",
-        CYCLES,
-        "if depth >= 0 or told.get(202, -depth) < -depth or self.inch:",
-        "if depth >= 0 or self.inch:",
-        f"{TESTS}::test_other_holes_are_not_certain",
+        HOLES,
+        "depth = min(depth + step, total)",
+        "depth = total",
+        f"{HOLE_TESTS}::test_strokes_go_down_to_over_the_ground",
     ),
     Mutation(
         "klartext: the feed in force behind a cycle is that of the cycle",
@@ -682,5 +685,89 @@ MUTATIONS = (
         'self.lose("XYZ")',
         'self.lose("")',
         f"{TESTS}::test_behind_a_switch_with_turned_axes_places_are_lost",
+    ),
+    Mutation(
+        "klartext: strokes of cycle 205 are all alike",
+        HOLES,
+        "step = max(step - less, min(least, step))",
+        "step = max(step, min(least, step))",
+        f"{HOLE_TESTS}::test_strokes_become_shorter",
+    ),
+    Mutation(
+        "klartext: strokes begin at the ground",
+        CYCLES,
+        "near = surface - before + self._above(item, told, clear + before)",
+        "near = surface - before + 0 * self._above(item, told, clear + before)",
+        f"{HOLE_TESTS}::test_strokes_go_down_to_over_the_ground",
+    ),
+    Mutation(
+        "klartext: IROT replaces the angle",
+        DATUMS,
+        "angle += self.turn",
+        "angle += 0",
+        f"{FRAMES}::test_steps_of_the_angle_add_and_a_parameter_may_say_it",
+    ),
+    Mutation(
+        "klartext: axes are known behind a rotation",
+        DATUMS,
+        'self._lose_frame("XY")',
+        "pass",
+        f"{FRAMES}::test_an_axis_that_has_not_been_told_is_not_known",
+    ),
+    Mutation(
+        "klartext: a shift is added in turned coordinates",
+        DATUMS,
+        "if self.turn or self.mirrored:",
+        "if self.mirrored:",
+        f"{FRAMES}::test_what_controls_do_each_in_their_way_is_refused",
+    ),
+    Mutation(
+        "klartext: mirrored axes are known",
+        DATUMS,
+        'self._lose_frame("".join(sorted({*before, *axes})))',
+        "pass",
+        f"{FRAMES}::test_an_axis_that_has_not_been_told_is_not_known",
+    ),
+    Mutation(
+        "klartext: contours in mirrored coordinates are on the other side",
+        MOVES,
+        "if side and self.mirrored:",
+        "if not side:",
+        f"{FRAMES}::test_what_controls_do_each_in_their_way_is_refused",
+    ),
+    Mutation(
+        "klartext: G68 about any point is cycle 10",
+        LINES,
+        'if any(ends.values()) or (ends and ends.keys() != {"X", "Y"}):',
+        "if len(ends) > 9:",
+        f"{FRAMES}::test_g68_about_the_zero_is_cycle_10",
+    ),
+    Mutation(
+        "klartext: DL is left out",
+        PROGRAM,
+        "known.length / unit)) + self.deltas['DL']",
+        "known.length / unit)) + 0 * self.deltas['DL']",
+        f"{TOOL_TESTS}::test_the_length_of_a_tool_is_longer_by_dl",
+    ),
+    Mutation(
+        "klartext: DL stays with the next tool",
+        PROGRAM,
+        "self.deltas = deltas if self.tool else self.deltas",
+        "self.deltas = self.deltas | deltas if self.tool else self.deltas",
+        f"{TOOL_TESTS}::test_it_ends_with_the_tool",
+    ),
+    Mutation(
+        "klartext: DR is that of a diameter",
+        MOVES,
+        "D{written(2 * self.tool_radius(item))}",
+        "D{written(self.tool_radius(item))}",
+        f"{TOOL_TESTS}::test_a_contour_is_beside_it_by_the_radius_with_dr",
+    ),
+    Mutation(
+        "klartext: the radius of a tool has no DR",
+        MOVES,
+        'radius += float(self.deltas.get("DR", 0))',
+        'radius += 0 * float(self.deltas.get("DR", 0))',
+        f"{TOOL_TESTS}::test_a_contour_is_beside_it_by_the_radius_with_dr",
     ),
 )

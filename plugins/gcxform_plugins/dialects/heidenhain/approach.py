@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import acos, atan2, degrees, hypot, isnan
+from math import acos, atan2, degrees, hypot
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.contours import BARE, STRAIGHT, Contours
@@ -29,7 +29,6 @@ from gcxform_plugins.dialects.heidenhain.moves import LEAST_ANGLE, SIDES, TURN, 
 from gcxform_plugins.dialects.heidenhain.positioning import Said
 from gcxform_plugins.dialects.heidenhain.words import Point, exact, written
 
-MM = 25.4  # of an inch
 SIZES = {"len": "LEN", "cca": "CCA"}
 NEEDS = {"LT": ("LEN",), "LN": ("LEN",), "CT": ("CCA", "R"), "LCT": ("R",)}
 SQUARE = (
@@ -80,7 +79,8 @@ class Approaches(Contours):
         """APPR and DEP. Raises InputError."""
         path, before = items[0], (self.feed, self.feed_lost)
         way, kind = path.name.split()
-        if self.reading.stays or self.begins is not None or self.following or self.shortest:
+        aside = self.begins is not None or self.following or self.shortest or self.mirrored
+        if self.reading.stays or aside:
             self.refuse(f"{path.name} is not resolved here", path)
         sizes = {SIZES[i.kind]: float(self.number_of(i)) for i in items[1:] if i.kind in SIZES}
         said = self.said([item for item in items[1:] if item.kind not in SIZES])
@@ -111,7 +111,7 @@ class Approaches(Contours):
         side = SIDES.get(said.side.name, "") if said.side else ""
         if not side or self.side or not self.motion:
             self.refuse(f"{path.name} without RL or RR, under them, or first of all moves", path)
-        radius, rapid = self._tool_radius(path), self.motion == "G0" and shape != "LCT"
+        radius, rapid = self.tool_radius(path), self.motion == "G0" and shape != "LCT"
         if shape != "LCT" and not rapid and (before[1] or not before[0]):
             raise self.refusal("GX204", f"{path.name}: no feed is in force before it", path)
         start = self._stands(path) if shape == "LCT" else (0.0, 0.0)
@@ -123,7 +123,7 @@ class Approaches(Contours):
         self.moved |= {"X", "Y"}
         along, left = self._leads(path, point), 1.0 if side == "G41" else -1.0
         aside = -along[1] * left, along[0] * left
-        begins = f"{self.in_plane('G17')}{side} D{self.in_spindle}"
+        begins = f"{self.in_plane('G17')}{self.beside(side, path)}"
         code, feed = ("G0" if rapid else "G1"), said.feed
         if shape == "LT":
             ahead = _away(point, along, -sizes["LEN"])
@@ -142,7 +142,7 @@ class Approaches(Contours):
         """Return the blocks of DEP."""
         if not self.side or said.side or self.last is None:
             self.refuse(f"{path.name} behind no element of a contour in RL or RR", path)
-        radius, point, along = self._tool_radius(path), self._stands(path), self._along(path)
+        radius, point, along = self.tool_radius(path), self._stands(path), self._along(path)
         left = 1.0 if self.side == "G41" else -1.0
         aside = -along[1] * left, along[0] * left
         end, feed = point, said.feed
@@ -212,14 +212,6 @@ class Approaches(Contours):
         if not size:
             self.refuse(f"{path.name} before an element that goes nowhere", path)
         return by[0] / size, by[1] / size
-
-    def _tool_radius(self, path: gx.Item) -> float:
-        known = self.reading.tools.get(int(self.in_spindle or 0))
-        if known is None or isnan(known.radius):
-            number = self.in_spindle or "*"
-            hint = f"give a machine file with the tool: radius = ... in [tool.{number}]"
-            self.refuse(f"{path.name} with a tool whose radius is not known", path, hint)
-        return known.radius / (MM if self.inch else 1.0)
 
     def _arc_at(
         self, path: gx.Item, point: Point, aside: Point, left: float, tool: float, radius: float

@@ -1,52 +1,47 @@
-"""Cycles of a TNC that are certain: datum shift, dwell, tolerance, and holes in plain strokes."""
+"""Cycles of a TNC that are certain: dwell, tolerance, and holes in plain strokes."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
-from itertools import islice
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.holes import HOLES, PATTERNS, round_places, row_places
-from gcxform_plugins.dialects.heidenhain.parameters import Parameters
-from gcxform_plugins.dialects.heidenhain.words import LINEAR, exact, plain, written
+from gcxform_plugins.dialects.heidenhain.datums import VALUE, Datums
+from gcxform_plugins.dialects.heidenhain.holes import (
+    HOLES,
+    OTHERS,
+    PATTERNS,
+    round_places,
+    row_places,
+    strokes_of,
+)
+from gcxform_plugins.dialects.heidenhain.words import exact, plain, written
 
-VALUE = r"[+-]?(?:\d{1,9}(?:[.,]\d{0,9})?|[.,]\d{1,9})"
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
-SHIFT_LINE = re.compile(r"[\s\d/]*CYCLE?\s+DEF\s*7\.[1-9]", re.IGNORECASE)
-SHIFTED = re.compile(rf"(I?)([XYZABCUVW])\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))\s*")
-DATUM = re.compile(r"TRANS\s+DATUM\s+(?:AXIS\s+(.*?)|RESET)\s*")
 CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
-CANCELS = {
-    **{"8.0": ("MIRROR IMAGE", "SPIEGELN"), "8.1": ("",)},
-    **{"10.0": ("ROTATION", "DREHUNG"), "10.1": ("ROT+0", "ROT +0", "ROT+0.000")},
-    **{"11.0": ("SCALING", "MASSFAKTOR"), "11.1": ("SCL 1", "SCL1", "SCL 1.000000")},
-}
-"""Lines of cycles that turn, mirror and scale, where they say that nothing is."""
-LEAVE = "if all of the program counts from it, leave this block out: G54 stands for it then"
+STROKES = 200, 205
+SLOWLY = 201, 203
+"""Cycles that are read in several strokes, and those that leave at a feed."""
 ALONE = "let the CAM write the hole as plain moves"
 
 
-class Cycles(Parameters):
+class Cycles(Datums):
     """Reads cycles, and writes those that are called as moves."""
 
     def __init__(self, *program: Any) -> None:
         super().__init__(*program)
-        self.shift = dict.fromkeys(LINEAR, "0")
-        self.new_shift: dict[str, str] = {}
         self.hole: dict[int, Decimal] = {}
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
         self.bounded = False
         self.places: list[tuple[str, str]] = []
-        self.by_cycle = True
 
     def define(self, item: gx.Item) -> list[str]:
         """CYCL DEF: what a cycle is told. Raises InputError for those that are not resolved."""
@@ -54,16 +49,15 @@ class Cycles(Parameters):
         if match is None:
             return self._call(item)
         number, part, text = int(match[1]), int(match[2] or 0), match[3]
-        if number == 7:
-            return self._shift(item, part, text)
+        frames = {7: self.cycle_7, 8: self.cycle_8, 10: self.cycle_10, 11: self.cycle_11}
+        if number in frames:
+            return frames[number](item, part, text)
         if number == 9:
             return self._dwell(item, part, text)
         if number == 32:
             return self._tolerance(item, part, text)
-        if text in CANCELS.get(f"{number}.{part}", ()):
-            return []
         if number == 247:
-            return self._preset(item, self._parameters(text))
+            return self.preset(item, self._parameters(text))
         if number in HOLES:
             self.hole, self.cycle = self._parameters(text), number
             self.given(self.hole.items())
@@ -72,7 +66,8 @@ class Cycles(Parameters):
             return self._pattern(item, number, self._parameters(text))
         if number == 1:
             return self._peck(item, part, text)
-        self.refuse(f"CYCL DEF {number} {text}".rstrip() + " is a cycle of the control", item)
+        why = OTHERS.get(number, "a cycle of the control")
+        self.refuse(f"CYCL DEF {number} {text}".rstrip() + f" is {why}", item)
 
     def _call(self, item: gx.Item) -> list[str]:
         """CYCL CALL: the cycle where the tool stands, or at the places of PATTERN DEF."""
@@ -155,101 +150,9 @@ class Cycles(Parameters):
             return []
         bound = "0"
         if found is not None:
-            bound = plain(found[1]) if found[1] else self._parameter(found[2], item)
+            bound = plain(found[1]) if found[1] else self.parameter(found[2], item)
         self.bounded = found is not None
         return [f"G64 P{bound}" if Decimal(bound) > 0 else "G61"]
-
-    # --- where the zero is ---
-
-    def _shift(self, item: gx.Item, part: int, text: str) -> list[str]:
-        """Cycle 7: the zero is elsewhere, behind the last line of the cycle."""
-        if part == 0:
-            self.new_shift = {}
-            return []
-        for axis, number in self._shifts(item, text):
-            if axis in self.new_shift:
-                raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
-            self.new_shift[axis] = number
-        rest = islice(self.lines, self.at, None)
-        ahead = next((text for text in rest if text.strip()), "")
-        if SHIFT_LINE.match(ahead):
-            return []
-        if not self.by_cycle and any(map(float, self.shift.values())):
-            self.refuse("a datum shift by cycle 7 beside one by TRANS DATUM", item)
-        self.by_cycle = True
-        return self._shifted(item, self.new_shift)
-
-    def _shifts(self, item: gx.Item, text: str) -> Iterator[tuple[str, str]]:
-        """Yield axes with their shifts; `IX` adds to the one in force."""
-        at = 0
-        while at < len(text):
-            match = SHIFTED.match(text, at)
-            if match is None:
-                self.refuse(f"a datum shift by {text}: a table", item)
-            step, axis, number, parameter = match.groups()
-            at = match.end()
-            value = plain(number) if number else self._parameter(parameter, item)
-            if step and axis not in self.shift:
-                self.refuse(f"a shift of {axis} by a step, and the one in force is not known", item)
-            if step:
-                value = exact(Decimal(value) + Decimal(self.shift[axis]))
-            yield axis, value
-
-    def _parameter(self, name: str, item: gx.Item) -> str:
-        self.computes = True
-        return self.value_of(name, item)
-
-    def _shifted(self, item: gx.Item, given: dict[str, str]) -> list[str]:
-        """Return the block of a shift, if it is another one than that in force.
-
-        An axis that is not named keeps its shift (simulators of TNC 426 and 640).
-        """
-        if any(float(n) for axis, n in given.items() if axis not in LINEAR):
-            self.refuse("a datum shift of other axes than X, Y and Z", item)
-        old, known = self.shift, {**self.shift, **given}
-        if not known.keys() >= set(LINEAR):
-            self.refuse("a datum shift that leaves out an axis whose shift is not known", item)
-        new = {axis: known[axis] for axis in LINEAR}
-        by = {a: Decimal(new[a]) - Decimal(old[a]) for a in LINEAR if a in old}
-        if len(by) == len(LINEAR) and not any(by.values()):
-            return []
-        self.refuse_beside("a datum shift", item)
-        if self.following:
-            self.refuse("a datum shift while the control follows the tip", item)
-        for axis in self.place.keys() & set(LINEAR):
-            if axis in by:
-                self.place[axis] = exact(Decimal(self.place[axis]) - by[axis])
-            else:
-                self.lose(axis)
-        self.shift, self.pole, self.polar, self.last = new, {}, None, None
-        return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
-
-    def datum(self, item: gx.Item) -> list[str]:
-        """TRANS DATUM AXIS and RESET: as cycle 7, where that shifts nothing (TNC7, datum shift).
-
-        Which of the two holds where both shift is not known.
-        """
-        match = DATUM.fullmatch(item.name)
-        if match is None or (self.by_cycle and any(map(float, self.shift.values()))):
-            self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
-        self.by_cycle = False
-        if match[1] is None:
-            return self._shifted(item, dict.fromkeys(LINEAR, "0"))
-        given: dict[str, str] = {}
-        for axis, number in self._shifts(item, match[1]):
-            if axis in given:
-                raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
-            given[axis] = number
-        return self._shifted(item, given)
-
-    def _preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
-        """Cycle 247: the preset; the one set by hand, if all of the program counts from it."""
-        if told.get(339) != 0 or len(told) > 1:
-            self.refuse("a preset of the table: only 0, which is set by hand, is read", item, LEAVE)
-        if self.moved or any(float(n) for n in self.shift.values()):
-            self.refuse("another preset in the middle of a program", item)
-        self.lose()
-        return []
 
     def _parameters(self, text: str) -> dict[int, Decimal]:
         """Return the parameters of a cycle, from this line or from those behind it."""
@@ -286,17 +189,36 @@ class Cycles(Parameters):
         if told.keys() - {*hole.needs, *hole.zero, *hole.idle}:
             raise self.refusal("GX215", f"{name} with parameters that are not known", item)
         clear, depth, feed, surface, high = (told[n] for n in (200, 201, 206, 203, 204))
-        if depth >= 0 or told.get(202, -depth) < -depth or self.inch:
+        deep = strokes_of(self.cycle, told) if depth < 0 else []
+        if not deep or self.inch or (len(deep) > 1 and self.cycle not in STROKES):
             message = f"{name} in several strokes, upwards, or in inches"
             raise self.refusal("GX215", message, item, ALONE)
-        if clear < 0 or 0 < high < clear:
-            raise self.refusal("GX215", f"{name} with Q204 below Q200", item, ALONE)
-        up = exact(surface + clear)
-        down = [] if self.place.get("Z") == up else [f"G0 Z{up}"]
-        blocks = [*down, *self._stroke(surface + depth, feed, told[211])]
-        if 208 in hole.needs:
-            blocks.append(f"Z{up}{self.feed_word(exact(told[208] or feed))}")
-        return self._out(blocks, exact(surface + high) if high else up)
+        if clear < 0 or 0 < high < clear or (len(deep) == 1 and told.get(210)):
+            message = f"{name} with Q204 below Q200, or Q210 in one stroke"
+            raise self.refusal("GX215", message, item, ALONE)
+        up = surface + clear
+        blocks = [] if self.place.get("Z") == exact(up) else [f"G0 Z{exact(up)}"]
+        for before, at in zip([Decimal(0), *deep], deep, strict=False):
+            if before:
+                near = surface - before + self._above(item, told, clear + before)
+                blocks += [f"G0 Z{exact(up)}", *_waits(told.get(210)), f"Z{exact(near)}"]
+            blocks.append(f"G1 Z{exact(surface - at)}{self.feed_word(exact(feed))}")
+        blocks += _waits(told[211])
+        if self.cycle in SLOWLY:
+            blocks.append(f"Z{exact(up)}{self.feed_word(exact(told[208] or feed))}")
+        return self._out(blocks, exact(surface + high) if high else exact(up))
+
+    def _above(self, item: gx.Item, told: Mapping[int, Decimal], room: Decimal) -> Decimal:
+        """Return how far over the ground a stroke begins to feed. Raises InputError."""
+        hint, above = ALONE, told.get(258)
+        if self.cycle == 200:
+            said = self.reading.control.get("peck-clearance")
+            above = Decimal(repr(said)) if isinstance(said, float) else None
+            hint = "peck-clearance in [control] of the machine file says how far over the ground"
+        if above is None or told.get(259, above) != above or not 0 < above <= room:
+            message = f"cycle {self.cycle}: from where a stroke feeds again is not certain"
+            raise self.refusal("GX215", message, item, hint)
+        return above
 
     def _pattern(self, item: gx.Item, number: int, told: dict[int, Decimal]) -> list[str]:
         """Cycles 220 and 221: the cycle defined last at once, over and over."""
@@ -361,3 +283,7 @@ class Cycles(Parameters):
             reached = min(reached + peck, total)
             blocks += self._stroke(surface - reached, feed, dwell if reached == total else top * 0)
         return self._out(blocks, exact(top))
+
+
+def _waits(seconds: Decimal | None) -> list[str]:
+    return [f"G4 P{exact(seconds)}"] if seconds else []

@@ -39,7 +39,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M91, TOOL CALL | are refused under M128, as the manual asks | 620, p. 340 |
 | F TCP, AXIS POS | feed of the tip, angles of axes: as M128; F CONT, SPAT refused | 640, p. 400 |
 | PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
-| TOOL CALL | tool, length, S, F; without number S and F only; DL, DR but 0 refused | [K] |
+| TOOL CALL | tool, length, S, F; without number S and F only | [K] |
+| its DL, DR | added to length and radius, which must be known; DR2: refused | iTNC 530, p. 183 |
 | TOOL DEF | no move; must not contradict the machine file | iTNC 530, p. 183 |
 | tool 0 | has no length | 640, p. 170 |
 | CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |
@@ -47,13 +48,17 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | END PGM | ends the program, as M2 and M30 do | [K] |
 | cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
 | TRANS DATUM | as cycle 7; not beside it | TNC7, D6 of the facts |
+| cycle 10, TRANS ROTATION | X and Y are turned about the zero; `IROT` adds | TNC 320, p. 258 |
+| cycle 8, TRANS MIRROR | axes are mirrored at it; RL, RR: refused | simulator of TNC 426 |
+| an axis behind them | is where it is told to go next | TNC 320, p. 258 |
+| both at once, another shift under them, scales but 1 | refused | |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
 | cycle 32 | T is how far the path may be off, as G64 P; its other lines: nothing | 620, p. 276 |
 | cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |
-| PLANE RESET STAY, ROT+0, SCL 1 | cancel what is refused here | [K] |
+| PLANE RESET STAY | cancels what is refused here | [K] |
 | cycle 247 | preset 0, before the first move; others are refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
-| cycle 200 | in one stroke; the feed behind a cycle must be programmed | [K] |
+| cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |
 | cycles 201, 203, 240, 220, 221 | as `holes.py` says; several rows, Q301=0: refused | 640, p. 162 |
 | PATTERN DEF POS, CYCL CALL PAT FMAX | the places in their order; from Q203 + Q204 only | 640 |
@@ -95,11 +100,17 @@ class Heidenhain(gx.Dialect):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        **{code: gx.Code("cutter-comp", takes="D", lengths="D") for code in ("G41.1", "G42.1")},
         "G43": v.frame("tool-length", "length", "H"),
+        "G43.1": v.frame("tool-length", "length-vector", v.AXES),
+        "G50.1": v.frame("mirror", "no-mirror", v.AXES),
+        "G51.1": v.frame("mirror", "mirror", v.AXES),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G53": v.frame("non-modal", "machine"),
         "G61": v.inert("path", act="exact-path"),  # what no T says: nearer than any tolerance
         "G64": v.inert("path", "P", "P", act="blend"),
+        "G68": v.frame("rotation", "rotate", v.AXES + "RIJK"),
+        "G69": v.frame("rotation", "no-rotate"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
+from math import isnan
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.cycles import VALUE, Cycles
-from gcxform_plugins.dialects.heidenhain.words import exact, plain
+from gcxform_plugins.dialects.heidenhain.cycles import Cycles
+from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.words import MM, exact, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
@@ -24,7 +26,6 @@ OTHERWISE = {
     "REFPNT": "the control then follows another point of the tool",
 }
 LONGEST_TOOL = 9  # digits
-MM = 25.4  # of an inch
 
 
 class Klartext(Cycles):
@@ -61,7 +62,7 @@ class Klartext(Cycles):
             "LBL": self.label,
             "CALL": self.call,
             "SEL": self.select,
-            "TRANS": self.datum,
+            "TRANS": self.transformed,
             "PATTERN": self.pattern,
             **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
             "FUNCTION": self._function_of,
@@ -159,9 +160,15 @@ class Klartext(Cycles):
                 "TOOL CALL while the control follows the tip", items[0], "write M129 before"
             )
         self.tool, self.tool_feed = "", ""
-        words = "".join(self._tool_word(item) for item in items[1:])
+        words = "".join(self._tool_word(item) for item in items[1:] if item.kind != "delta")
+        deltas = self._deltas([item for item in items if item.kind == "delta"])
+        if not self.tool and (deltas or self.deltas):
+            self.refuse(
+                "TOOL CALL without a tool, and DL or DR: which hold is not certain", items[0]
+            )
         if self.axis not in ("Z", "") or (self.tool and not self.axis):
             self.refuse("a tool along another axis than Z", items[0])
+        self.deltas = deltas if self.tool else self.deltas
         blocks = self._changed(items[0]) if self.tool else []
         return [*blocks, words.strip()] if words else blocks
 
@@ -182,12 +189,28 @@ class Klartext(Cycles):
             word = self.feed_word(self.number_of(item))
             self.tool_feed = self.feed
             return word
-        elif kind == "delta":
-            if float(self.number_of(item)) and not self.reading.stays:
-                self.refuse(f"{item.name} changes the tool by what no table has", item)
         else:
             raise self.refusal("GX101", f"{item.name[:20]!r} does not fit here", item)
         return ""
+
+    def _deltas(self, items: Sequence[gx.Item]) -> dict[str, Decimal]:
+        """Return DL and DR that are not 0; to the same control they need not be known."""
+        found = {item.name: Decimal(self.number_of(item)) for item in items}
+        if len(found) < len(items):
+            raise self.refusal("GX203", "a delta of the tool stands here twice", items[0])
+        if found.get("DR2") and not self.reading.stays:
+            self.refuse("DR2: what it does to the path is not certain", items[0])
+        return {} if self.reading.stays else {name: by for name, by in found.items() if by}
+
+    def _length(self, item: gx.Item, tool: str) -> str:
+        """Return the block of the length of a tool, with its DL."""
+        if not self.deltas.get("DL"):
+            return "G49" if tool == "0" else f"G43 H{tool}"
+        known, unit = self.reading.tools.get(int(tool)), MM if self.inch else 1.0
+        if known is None or isnan(known.length) or any(known.vector[:2]):
+            hint = f"give a machine file with the tool: length = ... in [tool.{tool}]"
+            self.refuse(f"DL of tool {tool}, whose length is not known", item, hint)
+        return f"G43.1 Z{written(Decimal(repr(known.length / unit)) + self.deltas['DL'])}"
 
     def _tool_number(self, item: gx.Item) -> str:
         text = self.number_of(item)
@@ -206,7 +229,7 @@ class Klartext(Cycles):
             self.lose()
         if self.reading.stays:
             return [f"T{tool} M6"]
-        return [f"T{tool} M6", "G49" if tool == "0" else f"G43 H{tool}"]
+        return [f"T{tool} M6", self._length(item, tool)]
 
     def _tool_def(self, item: gx.Item) -> list[str]:
         """TOOL DEF: prepares a tool; what it says of it must be what the machine file says."""

@@ -49,6 +49,7 @@ class Lines(gx.Speller):
         self.steps = self.over = self.bounded = False
         self.tool = self.in_spindle = self.speed = ""
         self.side = self.waits = " R0"
+        self.turns = Decimal(0)
 
     # --- programs ---
 
@@ -168,12 +169,11 @@ class Lines(gx.Speller):
             yield f"L{feed}"
             feed = ""
         ends = {axis: Decimal(values.pop(axis)) for axis in AXES if axis in values}
-        if "G52" in codes:
-            yield from self._shifted(ends)
+        if frame := next((code for code in codes if code in ("G52", "G68", "G69")), ""):
+            yield from self._shifted(ends) if frame == "G52" else self._turned(ends, values)
         elif "G53" in codes:
             yield f"L{_words(ends)} R0{self._rapid(feed)} M91"
-            for axis in ends:
-                self.place.pop(axis, None)
+            self._forget(ends)
         elif self.motion in ("G2", "G3") and (ends or values):
             yield from self._arc(ends, values, feed)
         elif ends:
@@ -304,16 +304,32 @@ class Lines(gx.Speller):
         """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
         return all(value == self._still(a) for a, value in ends.items() if a in "XY")
 
+    def _turned(self, ends: dict[str, Decimal], values: dict[str, str]) -> Iterator[str]:
+        """Yield cycle 10, which turns about the zero. Raises UnspeakableError."""
+        if any(ends.values()) or (ends and ends.keys() != {"X", "Y"}):
+            raise gx.UnspeakableError("G68 about another point has no words in Klartext", UNTURNED)
+        angle = Decimal(values.pop("R", "0"))
+        if angle or self.turns:
+            yield "CYCL DEF 10.0 ROTATION"
+            yield f"CYCL DEF 10.1 ROT{_signed(angle)}"
+        self.turns = angle
+        self._forget("XY")
+
     def _shifted(self, ends: dict[str, Decimal]) -> Iterator[str]:
         yield "CYCL DEF 7.0 DATUM SHIFT"
         for number, (axis, value) in enumerate(ends.items(), 1):
             yield f"CYCL DEF 7.{number} {axis}{_signed(value)}"
+        self._forget(ends)
+
+    def _forget(self, axes: Iterable[str]) -> None:
+        for axis in axes:
             self.place.pop(axis, None)
 
 
+UNTURNED = gx.put_before("offsets")
 ONE_UNIT = gx.put_before("metric")
 NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
-ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", *SIDES))
+ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))
 
 
 def _code(letter: str, text: str) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
-from math import atan2, ceil, cos, degrees, hypot, radians, sin
+from math import atan2, ceil, cos, degrees, hypot, nan, radians, sin
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.positioning import Said, Saying
-from gcxform_plugins.dialects.heidenhain.words import ROTARY, Element, exact, written
+from gcxform_plugins.dialects.heidenhain.words import MM, ROTARY, Element, exact, written
 
 TURN = 360.0
 PLANES = {"XY": "G17", "ZX": "G18", "YZ": "G19"}
@@ -83,8 +83,27 @@ class Moves(Saying):
             self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
         if self.following or self.in_spindle in ("", "0"):
             self.refuse("radius compensation without a tool, or under M128", said.side)
+        if side and self.mirrored:
+            self.refuse("radius compensation in mirrored coordinates", said.side)
         self.side = side
-        return f"{self.in_plane('G17')}{side} D{self.in_spindle}" if side else "G40"
+        return f"{self.in_plane('G17')}{self.beside(side, said.side)}" if side else "G40"
+
+    def beside(self, side: str, item: gx.Item) -> str:
+        """Return the code of a side with the tool, or with its diameter where DR changes it."""
+        if not self.deltas.get("DR"):
+            return f"{side} D{self.in_spindle}"
+        return f"{side}.1 D{written(2 * self.tool_radius(item))}"
+
+    def tool_radius(self, item: gx.Item) -> float:
+        """Return the radius of the tool with its DR. Raises InputError where it is not known."""
+        known = self.reading.tools.get(int(self.in_spindle or 0))
+        radius = nan if known is None else known.radius / (MM if self.inch else 1.0)
+        radius += float(self.deltas.get("DR", 0))
+        if not radius >= 0:
+            number = self.in_spindle or "*"
+            hint = f"give a machine file with the tool: radius = ... in [tool.{number}]"
+            self.refuse(f"{item.name} with a tool whose radius is not known", item, hint)
+        return radius
 
     def keep_side(self, said: Said) -> None:
         """Refuse a change of sides in a block that is no line in X and Y. Raises InputError."""

@@ -169,6 +169,8 @@ class Saying(Words):
         if on and self.following:
             return ()
         turned = any(float(self.place.get(axis, "nan")) % 360 for axis in self.turned())
+        if on and (self.turn or self.mirrored):
+            self.refuse("M128 in turned or mirrored coordinates", None)
         if on != self.following and turned:
             self.lose("XYZ")
         self.following = on

@@ -32,7 +32,7 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected", "by_cycle", "plane", "places"),
+    *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas"),
 )
 BEGUN = STATE.index("begun")
 state_of = attrgetter(*STATE)
@@ -136,7 +136,7 @@ class Programs(Runs):
     def _lose_cycle(self, words: str) -> None:
         """Forget what was defined before: another cycle, or another place of the zero."""
         self.scaled |= SCALES.match(words) is not None
-        self.shift = {}
+        self.shift, self.turn, self.mirrored = {}, None, None
         if words.startswith("CYCL") and "CALL" not in words:
             self.cycle = -1
 

@@ -14,6 +14,7 @@ import gcxform as gx
 LINEAR = "XYZ"
 ROTARY = "ABC"
 LONGEST = 20  # characters of a number
+MM = 25.4  # of an inch
 COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
 UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
 
@@ -52,6 +53,8 @@ class Words(gx.Translator):
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
     plane     G17, G18 or G19, as blocks have it
+    deltas    DL and DR of the tool in the spindle, as TOOL CALL has said
+    turn      degrees by which X and Y are turned;  mirrored: the axes that are; None: not known
     over      whether the program has ended
     q         what parameters are worth, by their names; None where only the control knows
     computes  something was computed, or decided: lines are no more what they say by themselves
@@ -78,6 +81,9 @@ class Words(gx.Translator):
         self.following = False
         self.shortest = False
         self.side = ""
+        self.deltas: dict[str, Decimal] = {}
+        self.turn: Decimal | None = Decimal(0)
+        self.mirrored: str | None = ""
         self.in_spindle = ""
         self.over = self.computes = False
         self.q: dict[str, float | None] = {
