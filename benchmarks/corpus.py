@@ -25,19 +25,20 @@ import signal
 import sys
 import tomllib
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 from corpus_files import known_of, written
 from grbl_rules import accepts
 
 import gcxform as gx
 from gcxform.modal.reader import WindowReader
-from gcxform.modal.state import Reading
+from gcxform.modal.state import Entry, Reading
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.file import load
 from gcxform.pipeline.pipeline import Pipeline
@@ -119,7 +120,7 @@ class Outcome:
 
 
 @cache
-def notes() -> dict[str, list[dict[str, str]]]:
+def notes() -> dict[str, list[dict[str, Any]]]:
     """Return the machines and the judgements of `corpus.toml`."""
     return tomllib.loads((HERE / "corpus.toml").read_text("utf-8"))
 
@@ -131,7 +132,7 @@ def pipeline(dialect: str, chain: str) -> Pipeline:
     return Pipeline(kind, kind, passes, START, numbers=NUMBERS)
 
 
-def machine_of(dialect: str, path: str) -> dict[str, str]:
+def machine_of(dialect: str, path: str) -> dict[str, Any]:
     """Return what `corpus.toml` says of the machine of a program."""
     mine = [m for m in notes()["machine"] if m["dialect"] == dialect]
     return [m for m in mine if re.search(m.get("programs", ""), path)][-1]
@@ -153,6 +154,12 @@ def write_anew(jobs: Iterable[Job]) -> None:
         print(f"{file}: not asked for: {', '.join(left) or 'nothing'}")
 
 
+def entry_of(said: Mapping[str, Any]) -> Entry:
+    """Return how a subprogram is called: modes, feed, and where each axis stands."""
+    start = {axis: value for axis, value in said.items() if axis.isupper()}
+    return Entry(modes=tuple(said["modes"].split()), start=start, feed=said["feed"])
+
+
 @cache
 def filled_in(dialect: str, path: str, chain: str, corpus: Path) -> Pipeline:
     """Return a chain with what the user of the machine of a program filled in."""
@@ -161,6 +168,8 @@ def filled_in(dialect: str, path: str, chain: str, corpus: Path) -> Pipeline:
     spec = load(HERE / "corpus_machines" / user["file"], registry)
     passes = tuple(parse_chain(CHAINS[chain], HERE, registry))
     made = Pipeline.of_spec(replace(spec, passes=passes), registry, dialect)
+    if "entry" in user:
+        made = replace(made, reading=replace(made.reading, entry=entry_of(user["entry"])))
     if "beside" in user:
         folder = (corpus / path).parent / user["beside"]
         made = replace(made, reading=replace(made.reading, subprograms=(folder,)))

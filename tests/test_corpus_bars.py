@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from functools import cache
 from pathlib import Path
@@ -16,9 +17,9 @@ import grbl_rules
 import corpus
 
 LEAST = {
-    "fanuc": (34, 8),
+    "fanuc": (34, 23),
     "grbl": (38, 37),
-    "haas": (13, 9),
+    "haas": (13, 10),
     "linuxcnc": (128, 90),
     "siemens": (54,),
     "heidenhain": (17,),
@@ -91,6 +92,25 @@ def test_as_many_real_programs_go_through(dialect: str, chain: str) -> None:
     assert good + ((dialect, chain) in LONGEST) >= LEAST[dialect][[*corpus.CHAINS].index(chain)]
     if dialect in corpus.MOST_KEPT:
         assert corpus.kept_lines(every)[dialect][0] <= corpus.MOST_KEPT[dialect]
+
+
+def test_whose_place_of_call_is_said_is_called_once() -> None:
+    """In all programs beside it, by a number in P and without a count."""
+    said = [each for each in corpus.notes()["machine"] if "entry" in each]
+    for machine in said:
+        mine = [
+            j
+            for j in jobs(machine["dialect"], "compensated")
+            if corpus.machine_of(j.dialect, j.path) is machine
+        ]
+        assert mine
+        for job in mine:
+            place = job.corpus / job.path
+            beside = [each.read_text("latin-1") for each in place.parent.glob("*.nc")]
+            calls = re.findall(rf"M98 P{place.stem}(?![0-9])(.*)", "\n".join(beside))
+            assert len(calls) == 1
+            assert "L" not in calls[0].partition("(")[0]
+            assert f"M98 P{place.stem}" in (place.parent / machine["caller"]).read_text("latin-1")
 
 
 @pytest.mark.parametrize(("dialect", "chain"), LONGEST)

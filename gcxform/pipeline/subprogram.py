@@ -5,8 +5,9 @@ state that the source leaves, so modes that the passes have changed are stated a
 return. Where what is written would depend on what is not known the file is kept, byte for byte, if
 no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
 
-A pass that does turn them keeps what moves nothing. Errors are those of a place: all else is for
-the run of the program that calls it, or `[entry]` says where the axes stand and in which modes.
+A pass that does turn them keeps what moves nothing, and what it would not change wherever that is
+called. Errors are those of a place: all else is for the run of the program that calls it, or
+`[entry]` says where the axes stand and in which modes.
 Then it begins and ends at commands that its caller gives and expects (`at_call.py`).
 """
 
@@ -80,9 +81,10 @@ def run_subprogram(
     if (changes or folds) and _moves_nothing(plan, source):
         done = certificate(*_run_of_text(plan, source, verify, held))
         done.assumed.append("this is a subprogram in which nothing moves: kept as it stands")
-    elif folds or (changes and plan.reading.entry == Entry()):
-        message = "this file is a subprogram: where its caller stands is not known here"
-        raise InputError.one("GX226", message, hint=HINT if folds else HINT_OF_PLACES)
+    elif folds:
+        raise _refusal(HINT)
+    elif changes and plan.reading.entry == Entry():
+        done = _the_same(plan, source, again, held)
     elif changes:
         done = _entered(plan, source, again, held)
     else:
@@ -98,6 +100,29 @@ def run_subprogram(
     for part in held.parts:
         sink(part)
     progress(source.size)
+    return done
+
+
+def _refusal(hint: str) -> InputError:
+    message = "this file is a subprogram: where its caller stands is not known here"
+    return InputError.one("GX226", message, hint=hint)
+
+
+def _the_same(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
+    """Run a file of which nobody says how it is called. Raises InputError if it would change.
+
+    If no byte does, nothing that is written depends on it, and nothing has been done that a stamp
+    would say. A file of O-words executes nothing.
+    """
+    if plan.source.flow_rule.language == "o-words":
+        raise _refusal(HINT_OF_PLACES)
+    try:
+        done = _entered(replace(plan, stamp=False), source, verify, held)
+    except InputError as why:
+        raise _refusal(HINT_OF_PLACES) from why
+    if b"".join(held.parts) != b"".join(source.windows()):
+        raise _refusal(HINT_OF_PLACES)
+    done.assumed.remove(AT_ONE_PLACE)
     return done
 
 

@@ -88,6 +88,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/name-in-sub]",
     ),
     _flow(
+        "a subprogram changes although nobody says how it is called",
+        "gcxform/pipeline/subprogram.py",
+        'if b"".join(held.parts) != b"".join(source.windows()):',
+        "if False:",
+        "tests/test_corpus.py::test_case[bad/gx226-alone-says-all]",
+    ),
+    _flow(
         "a file of a name is not asked for what it begins",
         "gcxform/flow/named_files.py",
         "if file is not None and here is not None:",
