@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import pytest
 from hypothesis import given
@@ -21,11 +22,11 @@ from oracles.compare import lengths
 from properties import test_laws as laws
 from properties.test_rs274 import as_move, compensation, drawn, drawn_model
 from reference.interpreter import Move, interpret
-from seeds_kit import shares
 
 import gcxform as gx
 
-COUNT = max(5 * laws.EXAMPLES, 150)  # of fewer none stays in inverse time
+TOGETHER = 50  # programs in a test
+FIRST = range(0, max(5 * laws.EXAMPLES, 150), TOGETHER)  # of fewer none stays in inverse time
 INVERSE, MINUTE = "feed mode=inverse-time", "feed mode=per-minute"
 CUTS = ("segment chord-error=5um", "segment arcs=split arc-step=20deg max-length=7mm", "plane")
 CHAINS = (
@@ -127,10 +128,14 @@ def written(seed: int) -> tuple[gx.Pipeline, bytes, gx.Result, float] | None:
     return pipeline, source, result, STRAIN if machine else CLOSE
 
 
-@pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
-@shares(COUNT, 150)
-def test_linuxcnc_takes_as_long(seeds: range) -> None:
-    modes: set[tuple[frozenset[str], frozenset[str]]] = set()
+Modes = tuple[frozenset[str], frozenset[str]]
+
+
+@cache
+def compared(first: int) -> frozenset[Modes]:
+    """Compare some programs with what becomes of them; return the modes before and after."""
+    modes: set[Modes] = set()
+    seeds = range(first, first + TOGETHER)
     jobs = [job for seed in seeds if (job := written(seed)) is not None]
     old = rs274.run_many([source for _, source, _, _ in jobs])
     new = rs274.run_many([result.text for _, _, result, _ in jobs])
@@ -144,9 +149,28 @@ def test_linuxcnc_takes_as_long(seeds: range) -> None:
         after = of_canon(moves, pipeline.limit(b"G20" in result.text.upper()))
         check(before, after, close, text)
         modes |= {(before[k].modes, after[k].modes) for k in set(before) & set(after)}
-    minute, inverse = frozenset({"G94"}), frozenset({"G93"})
-    assert {(minute, inverse), (inverse, minute), (inverse, inverse), (minute, minute)} <= modes
     assert len(jobs) > 0.6 * len(seeds)
+    return frozenset(modes)
+
+
+def with_linuxcnc(test: Callable[..., None]) -> Callable[..., None]:
+    """Mark a test that asks LinuxCNC: one process does, for the last test has all answers."""
+    group = pytest.mark.xdist_group("feeds of LinuxCNC")
+    there = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
+    return there(group(test))
+
+
+@with_linuxcnc
+@pytest.mark.parametrize("first", FIRST)
+def test_linuxcnc_takes_as_long(first: int) -> None:
+    compared(first)
+
+
+@with_linuxcnc
+def test_linuxcnc_is_asked_in_all_modes() -> None:
+    minute, inverse = frozenset({"G94"}), frozenset({"G93"})
+    wanted = {(minute, inverse), (inverse, minute), (inverse, inverse), (minute, minute)}
+    assert wanted <= frozenset().union(*map(compared, FIRST))
 
 
 def unclear(move: CanonMove) -> bool:
