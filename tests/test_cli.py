@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 import resource
+import shlex
 import shutil
 import stat
 import statistics
@@ -102,6 +103,26 @@ def test_a_verb_that_is_misspelt_is_proposed() -> None:
     assert found.exit_code == 2
     assert "there is no verb 'rum'; did you mean 'run'?" in found.stderr
     assert "No such command 'xyzzy'" in call("xyzzy").stderr
+
+
+def test_a_program_without_a_verb_is_told_what_to_type(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each line that is offered can be pasted, with a blank in the name."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "parts 1").mkdir()
+    text = "N10 G21 G90 G17 G54 G64 P0.01\nN20 G0 X1 Y1 Z1\nN30 G91 X2\nN40 M2\n"
+    (tmp_path / "parts 1" / "a.nc").write_text(text)
+    for named, lines in (("parts 1/a.nc", 3), ("parts 1", 2)):
+        found = call(named)
+        assert (found.exit_code, "it looks like linuxcnc" in found.stderr) == (2, True)
+        offered = [each for each in found.stderr.splitlines() if each.startswith("  gcxform ")]
+        assert len(offered) == lines
+        for line in offered:
+            done = call(*shlex.split(line.partition("    ")[0])[1:])
+            assert done.exit_code == 0, (line, done.output)
+    (tmp_path / "empty").mkdir()
+    assert "-f DIALECT" in call("empty").stderr
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")

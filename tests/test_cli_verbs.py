@@ -40,6 +40,19 @@ def test_check_counts_findings(here: Path) -> None:
     assert "two.nc:2:1: error[GX201]" in found.stderr
 
 
+def test_check_says_what_a_program_looks_like_where_nobody_does(here: Path) -> None:
+    """A program that asks gets no guess: it is told what to say."""
+    (here / "two.nc").write_bytes(b"G21 G90 G17 G64 P0.1\nG0 X1\nM2\n")
+    found = call("check", "two.nc")
+    assert found.exit_code == 0, found.stderr
+    assert "read as linuxcnc, since it looks like linuxcnc" in found.stderr
+    for words in (("check", "--json", "two.nc"), ("run", "two.nc")):
+        refused = call(*words)
+        assert refused.exit_code == 2
+        assert "GX726" in refused.output
+        assert "-x absolute -f linuxcnc" in refused.output
+
+
 @pytest.mark.parametrize(
     ("text", "place"),
     [

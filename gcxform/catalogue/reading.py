@@ -22,8 +22,11 @@ CODES: dict[str, tuple[str, str]] = {
         "The dialect has no such code or word",
         "The G code, M code or address letter is not one that the control of this dialect "
         "knows, so nothing is known of its effect. It is refused because an unknown code may "
-        "move an axis or change where one goes. Check the dialect first; if the code is a macro "
-        "of your machine, a dialect plugin can add it to the table of codes.",
+        "move an axis or change where one goes. Check the dialect first: `gcxform info FILE` says "
+        "which ones have all codes of a program, and `-f linuxcnc -t grbl` reads it as written for "
+        "one control and writes it for another, with the ways that there are for what this one "
+        "lacks. If the code is a macro of your machine, [control.macro] of the machine file "
+        "declares it where the control has macros; else a dialect plugin adds it to the codes.",
     ),
     "GX202": (
         "Two codes of one modal group in a block",

@@ -83,6 +83,10 @@ class Verbs(click.Group):
         if args[0] not in VERBS and not ctx.resilient_parsing:
             from difflib import get_close_matches
 
+            if os.path.exists(args[0]):
+                from gcxform.cli.common.door import next_steps
+
+                ctx.fail(next_steps(args[0]))
             if near := get_close_matches(args[0].lower(), VERBS, n=1):
                 ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
         return super().resolve_command(ctx, args)

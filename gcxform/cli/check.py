@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import click
@@ -12,7 +13,9 @@ from gcxform.catalogue.questions import PIPELINE
 from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.answer import answer
-from gcxform.cli.common.failures import warn
+from gcxform.cli.common.answer import asked as document
+from gcxform.cli.common.door import guessed
+from gcxform.cli.common.failures import say, warn
 from gcxform.cli.common.pipelines import announce
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
@@ -47,8 +50,8 @@ def command(file: str | None, **asked: Any) -> int:
     """Check a pipeline, and a program with it; exit 1 if there are findings."""
     what = Asked(**asked) if file is None else Asked(**asked).beside(file)
     announce(what)
-    if not what.says_chain and file is not None and what.dialect:
-        what = Asked(**{**asked, "chain": ""})
+    if not what.says_chain and file is not None:
+        what = _alone(what, file)
     pipeline = what.build()
     warn((*default_registry().diagnostics, *pipeline.warnings))
     steps = chain(pipeline)
@@ -58,6 +61,19 @@ def command(file: str | None, **asked: Any) -> int:
     with opened(file) as source:
         answer({"chain": steps}, steps)
         return _check(pipeline, source, what)
+
+
+def _alone(what: Asked, file: str) -> Asked:
+    """Return what is asked of a program for which there is no pipeline: whether it can be read.
+
+    A person who says no dialect is told which one it looks like; a program is not answered so.
+    """
+    if what.dialect:
+        return replace(what, chain="")
+    if document() is not None or (guess := guessed(file)) is None:
+        return what
+    say(f"read as {guess.dialects[0]}, since it looks like {guess}; -f DIALECT says what it is")
+    return replace(what, chain="", dialect=guess.dialects[0])
 
 
 # --- the chain ---

@@ -28,6 +28,8 @@ from gcxform.system.limits import how_to_raise, limits
 BYTES_AT_MOST = 1 << 28  # of executed blocks
 MOST_FILES = 1000  # that one program calls
 HINT = "let the CAM write plain blocks, or use passes that keep positions"
+MISSING = f"say where it lies by --subprograms DIR or subprograms in [input]; or {HINT}"
+"""The way out where a subprogram is not found."""
 
 
 class Execution(RunState):

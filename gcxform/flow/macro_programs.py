@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from gcxform.flow.execution import HINT
+from gcxform.flow.execution import MISSING
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
 from gcxform.flow.numbered_files import (
@@ -135,7 +135,7 @@ class MacroPrograms(MacroWords):
         """Return the first line of a program that is executed by a call."""
         if not self.has(number):
             message = f"the subprogram O{number} is not in this file, and in no file beside it"
-            raise self.refusal("GX210", message, HINT)
+            raise self.refusal("GX210", message, MISSING)
         if number in self.twice:
             raise self.refusal("GX223", f"there are two programs O{number}")
         if number in self.unnumbered:

@@ -9,7 +9,7 @@ beside the program and has the name of what stands behind the call may be meant 
 from __future__ import annotations
 
 from gcxform.flow.constructs import Constructs
-from gcxform.flow.execution import HINT, Execution
+from gcxform.flow.execution import MISSING, Execution
 from gcxform.flow.lookup import Found
 
 
@@ -39,7 +39,7 @@ class Subprograms:
         if not self._adds_file(str(number), behind, first):
             if behind is None:
                 message = f"the subprogram O{number} is neither behind this block nor in a file"
-                raise self.program.refusal("GX210", message, HINT)
+                raise self.program.refusal("GX210", message, MISSING)
             return behind
         start = self.program.listing.files[-1].first
         found = [each for each in self.arranged.labels.get(number, []) if each >= start]
@@ -52,7 +52,7 @@ class Subprograms:
         if not self._adds_file(label, behind, first):
             if behind is None or (first and behind < line):
                 message = f"the subprogram {label} is not in this file, and in no file beside it"
-                raise self.program.refusal("GX210", message, HINT)
+                raise self.program.refusal("GX210", message, MISSING)
             return behind
         found = self.arranged.subs.get((self.program.listing.files[-1].first, label))
         return found.lines[0] if found is not None else self._not_there(f"o<{label}>")

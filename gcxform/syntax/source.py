@@ -69,7 +69,8 @@ class Source:
         try:
             kind = path.stat().st_mode
             if stat.S_ISDIR(kind):
-                raise FileError.one("GX901", f"{name} is a directory, not a program")
+                hint = "run, post, batch, watch and machine new take folders"
+                raise FileError.one("GX901", f"{name} is a directory, not a program", hint=hint)
             if stat.S_ISCHR(kind) or stat.S_ISBLK(kind):
                 hint = "- is the program on stdin"
                 raise FileError.one("GX901", f"{name} is a device, not a program", hint=hint)

@@ -48,6 +48,7 @@ class Asked:
     no_stamp: bool = False
     again: bool = False
     found: str | None = None
+    program: str | None = None
 
     @property
     def file(self) -> str | None:
@@ -64,7 +65,7 @@ class Asked:
         if self.says_chain or program == "-":
             return self
         found = pipeline_above(Path(program))
-        return self if found is None else replace(self, found=str(found))
+        return replace(self, program=program, found=None if found is None else str(found))
 
     @property
     def says_chain(self) -> bool:
@@ -97,15 +98,23 @@ class Asked:
         if self.file is not None:
             return load(Path(self.file), registry)
         if self.chain is None:
-            raise UsageError.one(
-                "GX726",
-                "there is no pipeline",
-                hint=f"-p FILE, -x 'absolute | ...', {NAME} in the folder of the program, or set "
-                f"{ENVIRONMENT}; "
-                "-x '' -f DIALECT is the pipeline that changes nothing",
-            )
+            raise self._no_pipeline()
         passes = tuple(parse_chain(self.chain, Path.cwd(), registry))
         return PipelineSpec(passes=passes, warnings=chain_doubts(self.chain))
+
+    def _no_pipeline(self) -> UsageError:
+        """Return the error for a command line that says nothing of what is to be done."""
+        from gcxform.cli.common.door import guessed
+
+        guess = None if self.dialect or not self.program else guessed(self.program)
+        kind = guess.dialects[0] if guess else self.dialect or "DIALECT"
+        looks = f"{self.program} looks like {guess}; " if guess else ""
+        hint = (
+            f"{looks}-x absolute -f {kind} makes its distances positions, -x '' -f {kind} changes "
+            f"nothing; or a pipeline: -p FILE, {NAME} in the folder of the program, or "
+            f"{ENVIRONMENT}"
+        )
+        return UsageError.one("GX726", "there is no pipeline", hint=hint)
 
     def _merged(self, given: InputSpec) -> InputSpec:
         """Return the section `[input]` of the file with what the command line says instead."""

@@ -67,10 +67,13 @@ def read_call(
     meaning.events.append(EventShape(ORDER, _text(shape), meaning.call_slots))
 
 
+ELSEWHERE = "is it written for another control? `gcxform info FILE` says which ones have it"
+
+
 def not_there(word: Word, name: str, dialect: type[Dialect]) -> Refusal:
     """Refuse a code that the dialect does not have, and ask whether it is the machine's own."""
     hint = f'is it one of the machine\'s own? ends = "unknown" in [control.macro.{name}]'
-    asked = hint if dialect.flow_rule.macro_levels else ""
+    asked = hint if dialect.flow_rule.macro_levels else ELSEWHERE
     message = f"{dialect.name} has no code {name}"
     return Refusal("GX201", word.start, word.end - word.start, message, asked)
 

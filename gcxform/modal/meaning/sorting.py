@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
-from gcxform.modal.meaning.calls import calling, not_there, read_call
+from gcxform.modal.meaning.calls import ELSEWHERE, calling, not_there, read_call
 from gcxform.modal.meaning.choices import choices_of
 from gcxform.modal.meaning.lathe import lathe_signs
 from gcxform.modal.meaning.meaning import (
@@ -286,7 +286,9 @@ def _m_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
         name, width = code_of(word), word.end - word.start
         code = dialect.m_codes.get(int(word.value.value), dialect.block_rule.unknown_m)
         if code is None or word.value.value % 1:
-            yield Refusal("GX201", word.start, width, f"{dialect.name} has no code {name}")
+            yield Refusal(
+                "GX201", word.start, width, f"{dialect.name} has no code {name}", ELSEWHERE
+            )
             continue
         if code.group in groups and not dialect.block_rule.last_code_wins:
             message = f"{name} and {groups[code.group]} are of one modal group"
