@@ -53,8 +53,10 @@ INERT = {"fanuc": ("M6",), "haas": ("M6",)}
 target as of the source."""
 RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
-SETTINGS = {"cycle-without-place": "drills"}
-"""Setting 28 as a Haas is delivered."""
+SETTINGS = {"cycle-without-place": "drills", "peck-clearance": "1 mm"}
+"""Setting 28 as a Haas is delivered, and Setting 22 as `known.toml` has it of a Fanuc."""
+CONTOURS = "corners=arc entry=own"
+"""How the source takes the corners and the entry of a contour, where parameters decide."""
 INCREMENTS = {"fanuc": {None: "IS-B", "calculator": "calculator IS-B"}}
 """The steps to which a control rounds what it computes: of most machines those of 0.001 mm."""
 SLASHES = "execute"
@@ -136,6 +138,7 @@ def translate(pair: Pair, keep: Path | None = None) -> Found:
             refused = Outcome(pair.job, first.code, first.message, line)
             try:
                 step = offered(first.hint, added)
+                step = told(step, pair.job.dialect) if step else step
                 pipeline = taken(pipeline, step) if step else pipeline
             except gx.GcxformError:
                 step = None
@@ -168,6 +171,13 @@ def said(offer: StepBefore | Setting) -> str:
     if isinstance(offer, Setting):
         return f"{offer.key} {' '.join(offer.worth())}"
     return f"{offer.name} {offer.options}".strip()
+
+
+def told(offer: StepBefore | Setting, source: str) -> StepBefore | Setting:
+    """Return an offer with what only the user of the source knows."""
+    if not isinstance(offer, StepBefore) or offer.name != "cutter-comp" or source == "linuxcnc":
+        return offer
+    return offer._replace(options=f"{CONTOURS} {offer.options}".strip())
 
 
 def taken(pipeline: Pipeline, offer: StepBefore | Setting) -> Pipeline:

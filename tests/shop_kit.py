@@ -15,6 +15,9 @@ BEFORE = "".join(f"G10 L2 P{n} X{x} Y{y} Z{z}\n" for n, (x, y, z) in OFFSETS.ite
 BEFORE += f"G21 G90 G53 G0 X{HOME[0]} Y{HOME[1]} Z{HOME[2]}\nG28.1\nG53 G0 X0 Y0 Z0\nG80\n"
 SINGLE = ("tinyg", "g2core")
 """Controls whose arcs in XZ are refused."""
+PER_TURN = ("fanuc", "haas", "linuxcnc")
+TIMED = ("fanuc", "linuxcnc")
+"""Controls of which feeds per turn, and by times, are drawn."""
 THERE = 2
 """Moves of what stands before a program."""
 
@@ -63,15 +66,35 @@ class Drawn:
     def some(self) -> list[str]:
         """Return a few lines."""
         ways = [self.straight, self.arc, self.dwell, self.distances, self.work, self.units]
-        ways += [self.turn, self.told]
+        ways += [self.turn, self.told, self.feeds]
         ways += [self.hole] * 8 if self.drills else []
+        ways += [self.local] if self.control in ("fanuc", "haas") else []
         ways += [self.length, self.home] if self.drills or self.control == "mach3" else []
         return self.random.choice(ways)()
 
     def straight(self) -> list[str]:
         axes = self.random.sample("XYZ", self.random.randint(1, 3))
         low, high = (-5, 5) if self.steps else (-5, 25)
-        return [f"G{self.random.choice('01')} {self.words(''.join(axes), low, high)}"]
+        beside = self.random.choice([" M8", " M9", " M5", " M3"]) if self.chance(0.15) else ""
+        return [f"G{self.random.choice('01')} {self.words(''.join(axes), low, high)}{beside}"]
+
+    def feeds(self) -> list[str]:
+        """Return lines at a feed per turn, or by times, and a feed per minute again."""
+        if self.control not in PER_TURN:
+            return self.dwell()
+        low, high = (1, 5) if self.steps else (-5, 25)
+        lines = [f"G95 G1 F0.{self.random.randint(1, 9)} {self.words('XY', low, high)}"]
+        lines += [f"{self.words('Z', low, high)}"] if self.chance(0.5) else []
+        if self.control in TIMED and self.chance(0.5):
+            way = [f"{self.word(axis, low, high)} F{self.number(1, 40)}" for axis in "XYZ"]
+            lines = [f"G93 G1 {way[0]}", *way[1:]]
+        return ["G80", *lines, f"G94 F{self.number(60, 300)}"]
+
+    def local(self) -> list[str]:
+        """Return a shift of all work offsets, moves, and its end."""
+        moves = [*self.straight(), *self.hole()] if self.chance(0.5) else self.straight()
+        begin = [*("G80", self.absolute()), f"G52 {self.words('XYZ', -5, 5)}", self.everywhere()]
+        return [*begin, *moves, "G80", self.absolute(), "G52 X0. Y0. Z0.", self.everywhere()]
 
     def arc(self) -> list[str]:
         first, second = {17: "XY", 18: "XZ", 19: "YZ"}[self.plane]
@@ -121,8 +144,10 @@ class Drawn:
         ways = [["G91 G28 Z0.", "G90"], ["G90 G53 G0 Z0."]]
         number, axes = self.random.randint(1, 3), self.words("XZ", -9, 9)
         ways.append(["G90", f"G10 L2 P{number} {axes}", f"G{53 + number}"])
+        by_way = self.random.choice(["G90 G28 Z20.", "G91 G28 Z2. X1.", "G90 G28 X5. Y5."])
+        ways[2:2] = [["G80", by_way, "G90"]]
         self.steps = False
-        return [*self.random.choice(ways[: 3 if self.drills else 2]), self.everywhere()]
+        return [*self.random.choice(ways[: 4 if self.drills else 2]), self.everywhere()]
 
     def length(self) -> list[str]:
         number = self.random.choice([1, 2, 5, 7])

@@ -35,6 +35,7 @@ SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL})
 """Acts of codes that change no position."""
 HOME, MACHINE = "home", "machine"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
+NO_LENGTH = "no-length"
 ABORT = "ABORT"
 """A comment that ends the program: it stays."""
 STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
@@ -166,6 +167,18 @@ class Saying:
         return not any(other.act == code.act for other in self.target.codes.values()) and bool(
             self._named(VECTOR)
         )
+
+    def ends_length_alone(self, what: str) -> bool:
+        """Whether a code that lets go of a tool length has a block of its own there.
+
+        It may stand beside others here, and takes the axis words there (GRBL's G49).
+        """
+        code = self.source.codes.get(what.removeprefix(SWITCHED))
+        rules = self.source.tool_rule, self.target.tool_rule
+        if code is None or code.act != NO_LENGTH or not self.crosses:
+            return False
+        takes = rules[1].g49_takes_axes and not rules[0].g49_takes_axes
+        return takes and bool(self.instead(what))
 
     def moves_home(self, what: str, bare: bool, called: bool) -> bool:
         """Whether a way home of the source is G53 in the target.

@@ -64,7 +64,19 @@ def unsaid_words(meaning: Meaning, work: str, saying: Saying) -> frozenset[str]:
         said = saying.instead(event.what) and not saying.lengthens(event.what)
         gone |= set() if said else {event.what}
         gone |= set(taken) - set(saying.words_of(event.what, taken))
-    return frozenset(gone)
+    return frozenset(gone | {end_of_length(meaning, saying)} - {""})
+
+
+def end_of_length(meaning: Meaning, saying: Saying) -> str:
+    """Return the code of a block that lets go of a tool length by itself in the target, or "".
+
+    Beside nothing that moves it may stay.
+    """
+    motion = meaning.groups.get("motion", "G80") != "G80"
+    moves = motion or not meaning.slots.keys().isdisjoint(saying.source.axes)
+    if not saying.crosses or not moves:
+        return ""
+    return next((act.code for act in meaning.acts if saying.ends_length_alone(act.code)), "")
 
 
 def gaps_between(text: str, words: list[Word]) -> Iterator[bool]:

@@ -2,7 +2,8 @@
 
 M codes that act on one side of the motion of their block here, and on the other side there: before
 the motion what acts before it in the source, behind it what acts behind. And the length of a tool
-that the source calls by a number, and the target takes as it is: before the motion.
+that the source calls by a number, and the target takes as it is, or a code that lets go of one and
+takes the axis words there: before the motion.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from math import isfinite
 from gcxform.diagnostics import InputError
 from gcxform.dialect.codes import MCode
 from gcxform.dialect.dialect import INCH
-from gcxform.emit.expressible import STATED, code_of, like
+from gcxform.emit.expressible import STATED, code_of, end_of_length, like
 from gcxform.emit.manner import Manner, Task
 from gcxform.modal.meaning.meaning import EventShape
 from gcxform.syntax.shapes import Shape
@@ -45,12 +46,16 @@ def own_blocks(task: Task, count: Ints) -> tuple[list[Given], list[Given]]:
     if not task.manner.crossing:
         return before, behind
     said: dict[int, tuple[str, str]] = {}
+    ends: dict[int, str] = {}
     first = (count.cumsum() - count).tolist()
     lengths = _lengths(task)
     for line, (number, rows) in enumerate(zip(task.shape.tolist(), count.tolist(), strict=True)):
         if number not in said:
             said[number] = _texts(task.manner, task.table.shapes.shapes[number])
+            ends[number] = end_of_length(task.table.meanings[number], task.manner.saying)
         at = line + task.path.blocks.first
+        if end := ends[number]:
+            before.append(Given(first[line], end, at))
         opens, closes = said[number] if rows else ("", "")
         opens = " ".join(filter(None, (lengths.get(line, ""), opens)))
         if opens:

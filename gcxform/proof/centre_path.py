@@ -30,6 +30,7 @@ from functools import cached_property
 
 import numpy as np
 
+from gcxform.catalogue.offers import Hint, StepBefore
 from gcxform.contract.passes import CompensationPass, PassContext
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
@@ -43,7 +44,10 @@ REACH = 1.0  # mm; what is farther off is not measured
 SHAPE = ("kind", "end", "centre", "sweep", "side", "radius", "plane", "lost")
 OPEN = ("GX231", "GX232")
 """What a resolving pass refuses because it is not known, and not because it cannot be done."""
-MENDED = "write more decimals, or put the pass cutter-comp before: its path is proved as it is"
+MENDED = Hint(
+    "write more decimals, or put the pass cutter-comp before: its path is proved as it is",
+    StepBefore("cutter-comp"),
+)
 
 
 @dataclass(slots=True)

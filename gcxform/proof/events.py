@@ -30,6 +30,21 @@ from gcxform.toolpath.path import Event, Toolpath
 from gcxform.values import dataclass
 
 
+def _machine_last(events: list[Event], machine: str) -> list[Event]:
+    """Return events with the code that stands before axis words behind the others of its block."""
+    for n in range(len(events) - 2, -1, -1):
+        at = n
+        while at + 1 < len(events) and events[at].what == machine and _beside(*events[at : at + 2]):
+            events[at], events[at + 1] = events[at + 1], events[at]
+            at += 1
+    return events
+
+
+def _beside(one: Event, other: Event) -> bool:
+    """Whether two events are of one block, and before the same row, the other of a G code."""
+    return (one.line, one.row) == (other.line, other.row) and other.what.startswith("G")
+
+
 @dataclass(frozen=True)
 class EventProof:
     """What of the events has to be in the output too.
@@ -51,9 +66,12 @@ class EventProof:
         saying = self.context.saying
         if not (saying.crosses or saying.drop or saying.m_codes):
             return told
-        if saying.length_said:  # it has a block of its own, before its line
-            told = tuple(sorted(told, key=lambda e: (e.line, not saying.lengthens(e.what))))
-        return tuple(self._as_there(event, path) for event in told if saying.instead(event.what))
+        alone = {e.what for e in told if saying.lengthens(e.what)}
+        alone |= {e.what for e in told if saying.ends_length_alone(e.what)}
+        if alone:  # they have blocks of their own, before their lines
+            told = tuple(sorted(told, key=lambda e: (e.line, e.what not in alone)))
+        there = [self._as_there(event, path) for event in told if saying.instead(event.what)]
+        return tuple(_machine_last(there, saying.machine))
 
     def _until_end(self, told: tuple[Event, ...]) -> tuple[Event, ...]:
         """Return events without further ends behind one at which the target alone stops."""
@@ -134,6 +152,9 @@ class EventProof:
         self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
     ) -> Iterator[Wrong]:
         """Yield where events are not the same, in order, at the same place between the moves."""
+        saying = self.context.saying
+        if any(saying.ends_length_alone(event.what) for event in old):  # first in its block
+            new = tuple(sorted(new, key=lambda e: (e.line, not saying.ends_length_alone(e.what))))
         both = min(len(old), len(new))
         lines = trace.lines_of(np.array([event.line for event in new[:both]], np.int64))
         written = np.array([event.row for event in new[:both]], np.int64)

@@ -25,6 +25,7 @@ UNITS = {20: 25.4, 21: 1.0}
 OWN_UNITS = {**UNITS, 70: 25.4, 71: 1.0, 700: 25.4, 710: 1.0}
 FANUCS, LANGUAGES = ("fanuc", "haas"), ("siemens", "fagor")
 CYCLES = (73, 81, 82, 83, 85, 89)
+HOLE = re.compile(r"(MCALL\s*)?CYCLE8[12]\(([^)]*)\)|MCALL")
 Point = tuple[float, ...]
 Arc = tuple[int, complex, float]
 
@@ -63,6 +64,7 @@ class Control:
         default_factory=lambda: {n: list(at) for n, at in OFFSETS.items()}
     )
     hole: dict[str, float] = field(default_factory=dict)
+    called: tuple[float, ...] = ()
     over: bool = False
 
     def zero(self, k: int) -> float:
@@ -101,8 +103,15 @@ def moving(out: list[Move | str]) -> list[Move | str]:
 
 def block(control: Control, line: str) -> None:
     """Execute a line."""
-    text = re.sub(r"\([^)]*\)|;.*|^\s*N\d+", "", line.upper()).strip()
+    comment = r";.*" if control.name == "siemens" else r"\([^)]*\)|;.*"
+    text = re.sub(rf"{comment}|^\s*N\d+", "", line.upper()).strip()
     if not text or text[0] in "%O":
+        return
+    if found := HOLE.fullmatch(text):
+        given = tuple(float(each or "nan") for each in (found[2] or "").split(",") if found[2])
+        control.called = given if found[1] else ()
+        if not found[1] and given:
+            drilled(control, given)
         return
     machine = "SUPA" in text
     found = WORD.findall(re.sub(r"SUPA|TURN\s*=\s*\d+", "", text).replace("CR=", "R="))
@@ -122,7 +131,23 @@ def block(control: Control, line: str) -> None:
     told(control, functions, words)
     lengths(control, codes, words)
     moves(control, codes, words, machine)
+    if control.called and words.keys() & set("XYZ"):
+        drilled(control, control.called)
     late(control, functions)
+
+
+def drilled(control: Control, given: tuple[float, ...]) -> None:
+    """Drill a hole of CYCLE81 or CYCLE82: RTP, RFP, SDIS, DP, DPR, DTB."""
+    back, reference, above, bottom, *_, wait = (*given[:4], *given[5:6], 0.0)[:5]
+    k = "XYZ".index(AXES[control.plane][2])
+    steps = [(0, reference + above), (1, bottom), (4, wait), (0, back)]
+    for code, level in steps:
+        if code == 4:
+            control.out += [f"dwell {level:.6g}"] if level else []
+            continue
+        end = list(control.at)
+        end[k] = level * control.unit + control.zero(k)
+        control.go(code, end)
 
 
 def dwell(control: Control, words: dict[str, float], pointed: bool) -> float:
@@ -142,7 +167,7 @@ def modes(control: Control, codes: list[float], words: dict[str, float]) -> None
         control.steps = code == 91 if code in (90, 91) else control.steps
         control.back = int(code) if code in (98, 99) else control.back
     if "F" in words:
-        control.feed = words["F"] * control.unit
+        control.feed = words["F"] * (control.unit if control.mode != 93 else 1.0)
 
 
 def told(control: Control, functions: list[int], words: dict[str, float]) -> None:
@@ -309,8 +334,10 @@ def same(a: Move, b: Move) -> bool:
     """Whether two moves are the same to the decimals that programs are written in."""
     if (a.code, a.arc is None, a.feed is None) != (b.code, b.arc is None, b.feed is None):
         return False
-    if a.feed and b.feed and abs(a.feed[1] - b.feed[1]) > 0.02 * max(a.feed[1], 0.5):
-        return False
+    if a.feed and b.feed:
+        coarse = 0.001 if a.feed[0] == 95 else 0.02 * max(a.feed[1], 0.5)
+        if a.feed[0] != b.feed[0] or abs(a.feed[1] - b.feed[1]) > coarse:
+            return False
     if a.arc and b.arc:
         turned = abs(a.arc[2] - b.arc[2]) > 0.01 or abs(a.arc[1] - b.arc[1]) > 0.02
         if turned or a.arc[0] != b.arc[0]:

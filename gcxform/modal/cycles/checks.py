@@ -33,7 +33,7 @@ class Checks:
     """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled.
 
     `open_pecks`: where the tool goes between them need not be known, nor when it rises to an R
-    above the level from which the cycle began.
+    above the level from which the cycle began. Over the hole, or once at R, that is the same.
     """
 
     def __init__(
@@ -148,10 +148,17 @@ class Checks:
         yield deep, f"{{code}} with {normal} above R", ""
         if not self.rule.rises_first:
             high = drilled & (stretch.clearance > stretch.initial)
-            high &= calls.initial | (not self.open_pecks)  # G99 ends at R on every control
+            open_way = self._from_below_r() & (not self.open_pecks)
+            high &= calls.initial | open_way  # G99 ends at R on every control
             message = "{code} with R above the level from which the cycle began"
             yield high, message, "move up before the cycle"
         yield self._moves() > MOST, f"{{code}} would become more than {MOST} moves", ""
+
+    def _from_below_r(self) -> Flags:
+        """Return which calls go aside to their holes from below R: when they rise is not known."""
+        stretch = self.stretch
+        there = (stretch.after[:, :2] == stretch.start).all(axis=1) & ~self.calls.lost
+        return np.asarray(~there & ~(stretch.level >= stretch.clearance))
 
     def _moves(self) -> Floats:
         """Return about how many moves a call becomes."""
