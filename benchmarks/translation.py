@@ -37,9 +37,12 @@ from corpus import BESIDE, NUMBERS, OURS, Job, Outcome, counted, filled_in
 from corpus import run as run_in_own
 from gcxform.catalogue.offers import StepBefore, offers
 from gcxform.catalogue.settings import Setting
+from gcxform.cli.check import reading_findings
+from gcxform.flow.straightened import written_out
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 
 TARGETS = ("linuxcnc", "fanuc", "haas", "grbl")
 JUDGED = Path(__file__).with_name("translation.toml")
@@ -215,8 +218,32 @@ def judged(pair: Pair, text: bytes) -> Outcome | None:
         return Outcome(
             job, "CHECK", f"{first.code} {first.message}", first.where.line if first.where else 0
         )
+    if new := new_findings(pair, text):
+        return Outcome(
+            job, "CHECK", f"{' '.join(sorted(new))} in the target, and not in the source"
+        )
     said = said_by_rs274(text, job.corpus) if pair.target == "linuxcnc" else ""
     return Outcome(job, "RS274", said) if said else None
+
+
+def new_findings(pair: Pair, text: bytes) -> set[str]:
+    """Return the codes of what `check` finds in a result, and not in its source."""
+    made = replace(into(pair.job, pair.target), passes=())
+    there = replace(made, source=made.target, m_codes={}, drop=frozenset(), inert=frozenset())
+    found = found_by_check(there, Source.of_bytes(text))
+    if not found:
+        return found
+    here = replace(made, target=made.source, m_codes={}, drop=frozenset(), inert=frozenset())
+    return found - found_by_check(here, Source.of_bytes(pair.job.text))
+
+
+def found_by_check(pipeline: Pipeline, source: Source) -> set[str]:
+    """Return the codes of what speaks against reading a program as the source of a pipeline."""
+    try:
+        read = written_out(source, pipeline.source, pipeline.reading)
+    except gx.InputError as error:
+        return {each.code for each in error.diagnostics}
+    return {each.code for each in reading_findings(pipeline, read)}
 
 
 def said_by_rs274(text: bytes, corpus: Path) -> str:

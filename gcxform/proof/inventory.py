@@ -17,6 +17,7 @@ from math import isnan
 
 import numpy as np
 
+from gcxform.catalogue.offers import put_before
 from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.arithmetic import Key
@@ -115,6 +116,7 @@ def not_taken(
         message = f"{context.target.name} would refuse what is written, {written!r}: {each.message}"
         where = Location(file, int(source[line]) + 1 if line < len(source) else 0)
         hint = "" if "[input]" in each.hint else each.hint  # that is said of another program
+        hint = hint or (put_before("cutter-comp") if each.code == "GX230" else "")
         found.append(Diagnostic(each.code, message, where, hint))
     if isinstance(error, InputError) and context.source is not context.target:
         return InputError(tuple(found))

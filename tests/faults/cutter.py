@@ -17,6 +17,17 @@ def _offsetting(name: str, old: str, new: str) -> Mutation:
     )
 
 
+def _entry(name: str, file: str, old: str, new: str, test: str = "") -> Mutation:
+    case = f"tests/test_corpus.py::test_case[cutter-comp/{test}]"
+    return Mutation(
+        f"arc entry: {name}",
+        f"plugins/gcxform_plugins/passes/cutter_comp/{file}.py",
+        old,
+        new,
+        case if test else "tests/test_arc_entries.py",
+    )
+
+
 def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
     return Mutation(
         f"beside: {name} not looked at",
@@ -222,7 +233,19 @@ MUTATIONS = (
     _beside("ends", 'self._fail(wrong, "the centre is not', 'str("'),
     _beside("backwards", 'self._fail(back, "', 'str("'),
     _beside("sweeps", 'self._fail(self.arc & (off > slack), "', 'str("'),
-    _beside("centres", 'self._fail(self.arc & (_size(self.c - self.d) > CLOSE), "', 'str("'),
+    _beside("centres", 'self._fail(moved, "the centre of', 'str("the centre of'),
+    _entry("its direction is not looked at", "proof", "(uneven | turned |", "(uneven |"),
+    _entry("its start is not looked at", "proof", "(uneven | turned |", "(turned |"),
+    _entry("it keeps its centre", "offsetting", "2 * along)", "3 * along)"),
+    _entry("a small one", "offsetting", "radius <= radius:", "radius < 0:", "arc-begins-too-small"),
+    _entry(
+        "an inside corner moves its end",
+        "offsetting",
+        "elif one.middle is not None and not turn < 0:",
+        "elif False:",
+        "arc-begins-then-inside",
+    ),
+    _entry("a circle", "offsetting", "edge.sweep > tau - WHOLE", "False", "arc-begins-whole"),
     _beside("missing corners", 'self._fail(missing, "', 'str("'),
     _beside("round corners", "self.row[k][round_it & wrong]", "self.row[k][:0]"),
     _beside("other axes", "on[~same.all(axis=1)]", "on[:0]"),

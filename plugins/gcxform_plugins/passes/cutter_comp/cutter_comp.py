@@ -113,7 +113,7 @@ class CutterComp(gx.CompensationPass):
         rule = context.source.cutter_comp
         corners = Corners(rule.corners) if rule.corners else self.corners or Corners.ARC
         entry = Entry(rule.entry) if rule.entry else self.entry or Entry.OWN
-        return Manner(corners, entry, rule.straight or STRAIGHT)
+        return Manner(corners, entry, rule.straight or STRAIGHT, bool(rule.corners and rule.entry))
 
 
 @dataclass
@@ -210,6 +210,7 @@ class _CentrePath:
         self.manner = manner
         self.start = path.start
         self.end = np.array(path.end)
+        self.centre = np.array(path.centre)
         self.sweep = np.array(path.sweep)
         self.sense = path.sense.astype(np.int64)
         self.inserted: dict[int, Edge] = {}
@@ -267,6 +268,8 @@ class _CentrePath:
         for row, edge in zip(rows, edges, strict=True):
             if edge.centre is not None:
                 self.sweep[row] = swept(edge)
+            if edge.middle is not None:
+                self.centre[row, axes] = edge.middle
             if edge.corner:
                 self.inserted[row] = edge
 
@@ -289,7 +292,7 @@ class _CentrePath:
         columns: dict[str, Any] = {
             "end": np.asfortranarray(self.end[row]),
             "kind": before.kind[row],
-            "centre": before.centre[row],
+            "centre": self.centre[row],
             "sweep": self.sweep[row],
             "nth": before.nth[row] + nth,
             "side": np.zeros(len(row), np.int8),

@@ -3,7 +3,8 @@
 Everything is in the coordinates of one plane, mm, scalar. `side` is +1 where the tool is left of
 the contour and -1 where it is right. What is computed is what LinuxCNC's interpreter executes:
 
-- the move that begins compensation goes straight to the point beside its own end;
+- the move that begins compensation goes straight to the point beside its own end; an arc goes there
+  as an arc that ends in the same direction;
 - at an outside corner a circle of the tool's radius about the corner is inserted;
 - at an inside corner both moves end where their offset curves meet;
 - turns of less than 0.05 rad are taken for none: the next move begins where the one before ended.
@@ -20,7 +21,9 @@ from math import atan2, ceil, hypot, pi, sqrt, tau
 Point = tuple[float, float]
 
 SHARP = 0.05  # rad; controls differ on corners that are sharper
+WHOLE = 0.5  # rad; an arc that begins compensation has to be so much less than a turn
 LONGER = 0.025  # rad; so much may an arc gain where it begins off its own normal
+STILL = 1e-6  # mm; what is as near is at one place
 BACK = 1e-6  # rad; a line that goes back the way it came
 
 
@@ -40,11 +43,15 @@ class Entry(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Manner:
-    """How a control compensates; `straight` (rad): turns below are taken for none."""
+    """How a control compensates; `straight` (rad): turns below are taken for none.
+
+    `enters_by_arc`: it is known how an arc begins compensation.
+    """
 
     corners: Corners
     entry: Entry
     straight: float
+    enters_by_arc: bool = False
 
 
 class CannotOffsetError(Exception):
@@ -69,6 +76,7 @@ class Edge:
     first, last     unit tangents at start and end
     begin, finish   where the centre path begins and ends it
     corner          what comes before it: "", "arc" or "line"
+    middle          centre of the centre path of an arc that begins compensation
     """
 
     start: Point
@@ -81,6 +89,7 @@ class Edge:
     begin: Point = (0.0, 0.0)
     finish: Point = (0.0, 0.0)
     corner: str = ""
+    middle: Point | None = None
 
     def __post_init__(self) -> None:
         self.first = self.direction(self.start)
@@ -133,6 +142,8 @@ def offset(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
 def swept(edge: Edge) -> float:
     """Return the sweep (rad) of the centre path of an arc: the contour's, trimmed at its ends."""
     assert edge.centre is not None
+    if edge.middle is not None:
+        return edge.sense * _angle(edge.begin, edge.finish, edge.middle) % tau
     at_start = _angle(edge.start, edge.begin, edge.centre)
     at_end = _angle(edge.end, edge.finish, edge.centre)
     return edge.sweep + edge.sense * (at_end - at_start)
@@ -142,7 +153,8 @@ def _begin(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
     """Place the move that begins compensation."""
     edge = edges[0]
     if edge.centre is not None:
-        raise CannotOffsetError(0, "compensation begins with an arc")
+        _begin_with_arc(edge, side, radius, manner)
+        return
     if edge.length <= radius:
         raise CannotOffsetError(
             0,
@@ -154,12 +166,36 @@ def _begin(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
     edge.finish = _beside(edge.end, edge.last, side, radius)
 
 
+def _begin_with_arc(edge: Edge, side: int, radius: float, manner: Manner) -> None:
+    """Place an arc that begins compensation: from its start, and in its direction at its end.
+
+    Its centre is on the line from the point beside its end, f, to the programmed one, along the
+    unit vector u, at t from f: |p - f - t u| = |t| with p its start, so t = |p - f|^2 / 2 (p - f).u
+    """
+    assert edge.centre is not None
+    if not manner.enters_by_arc:
+        raise CannotOffsetError(0, "compensation begins with an arc")
+    if edge.radius <= radius:
+        message = "the radius of the arc that begins compensation is not larger than the tool's"
+        raise CannotOffsetError(0, message, alarm=True)
+    edge.begin, edge.finish = edge.start, _beside(edge.end, edge.last, side, radius)
+    u = _unit(edge.centre[0] - edge.end[0], edge.centre[1] - edge.end[1])
+    w = edge.start[0] - edge.finish[0], edge.start[1] - edge.finish[1]
+    along = w[0] * u[0] + w[1] * u[1]
+    if along <= STILL or edge.sweep > tau - WHOLE:
+        raise CannotOffsetError(0, "the arc that begins compensation is nearly a whole circle")
+    reach = (w[0] ** 2 + w[1] ** 2) / (2 * along)
+    edge.middle = edge.finish[0] + reach * u[0], edge.finish[1] + reach * u[1]
+
+
 def _join(edges: list[Edge], index: int, side: int, radius: float, manner: Manner) -> None:
     """Join two neighbours at their corner."""
     one, other = edges[index - 1], edges[index]
     turn = _turn(one, other, side)
     if abs(turn) <= manner.straight:
         other.begin = one.finish
+    elif one.middle is not None and not turn < 0:
+        raise CannotOffsetError(index, "an inside corner behind an arc that begins compensation")
     elif _closes(other, turn, side):
         one.finish = other.begin = _meeting(one, other, index, side, radius)
     elif _turns_back(one, other, turn):
@@ -276,6 +312,8 @@ def _turn(one: Edge, other: Edge, side: int) -> float:
 def _check_direction(edges: list[Edge], index: int, alarm: bool) -> None:
     """Refuse a move that its inside corners leave nothing of."""
     edge = edges[index]
+    if edge.middle is not None:
+        return
     if edge.centre is not None:
         if not 0 <= swept(edge) <= edge.sweep + LONGER:
             message = "the tool cannot reach the arc between inside corners"

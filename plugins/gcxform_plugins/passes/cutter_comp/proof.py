@@ -21,8 +21,10 @@ else 0. Derived here: h is linear along a line; an arc with d = c keeps |x - c|,
 the other; so it is enough that both ends hold it. Where two curves meet in a corner, that fixes the
 joint but for the second crossing of a circle, which turns outwards (`_check_meetings`). Where they
 are tangents, and at the end of a stretch, it does not: there (b - q) . last = 0 is asked for
-(`_check_slides`). Around an outside corner the centre keeps r from p: an arc about p, or lines that
-nowhere come nearer. All of this is of the path as computed, before it is rounded.
+(`_check_slides`). An arc that begins a stretch has a circle of its own: of it is asked that it goes
+from p to b, and at b as the contour does at q, d being on the line through q and c. Around an
+outside corner the centre keeps r from p: an arc about p, or lines that nowhere come nearer. All of
+this is of the path as computed, before it is rounded.
 """
 
 from __future__ import annotations
@@ -233,11 +235,18 @@ class _Proof:
         """Check that the centre moves as the contour does."""
         back = ~self.arc & (_dot(self.first, self.b - self.a) < -CLOSE)
         self._fail(back, "the centre moves backwards")
-        sweep = self.after.sweep[self.main[self.row]]
-        programmed = self.before.sweep[self.row]
-        self._fail(self.arc & ((sweep < 0) | (sweep > programmed + GAINED)), "the arc is too long")
-        self._fail(self.arc & (_size(self.c - self.d) > CLOSE), "the centre of the arc has changed")
-        u, v = self.a - self.c, self.b - self.c
+        sweep, enters = self.after.sweep[self.main[self.row]], self.arc & self.entry
+        most = np.where(enters, 2 * np.pi, self.before.sweep[self.row] + GAINED)
+        self._fail(self.arc & ((sweep < 0) | (sweep > most)), "the arc is too long")
+        moved = self.arc & ~enters & (_size(self.c - self.d) > CLOSE)
+        self._fail(moved, "the centre of the arc has changed")
+        middle = np.where(enters[:, None], self.d, self.c)
+        u, v = self.a - middle, self.b - middle
+        uneven = np.abs(_size(u) - _size(v)) > 2 * CLOSE
+        out = self.q - self.c  # at its end an arc that begins compensation keeps its direction
+        turned = np.abs(_cross(v, out)) > CLOSE * _size(out) + ANGLE * _size(v) * _size(out)
+        wrong = enters & (uneven | turned | (_dot(v, out) <= 0))
+        self._fail(wrong, "the arc that begins compensation does not end in its direction")
         measured = np.arctan2(self.sense * _cross(u, v), _dot(u, v))
         off = np.abs(np.mod(sweep - measured + np.pi, 2 * np.pi) - np.pi)
         slack = CLOSE / np.maximum(np.minimum(_size(u), _size(v)), CLOSE) + ANGLE
