@@ -1,8 +1,12 @@
-"""bCNC of Debian reads what gcxform writes: every line, and moves end where they should."""
+"""Senders read what gcxform writes: every line, and moves end where they should.
+
+bCNC is that of Debian; of CNCjs it is the package of npm by which it draws a program.
+"""
 
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -50,9 +54,30 @@ def test_bcnc_goes_where_the_program_goes(chain: str, tmp_path: Path) -> None:
     found = json.loads(said.stdout)
     assert found["loaded"]
     assert found["lines"] == done.text.decode().splitlines()
-    path = gx.read(done.text, "grbl").path
+    agree(done.text, found["ends"])
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_cncjs_draws_where_the_program_goes(chain: str, tmp_path: Path) -> None:
+    """The package is looked for where Node does so: NODE_PATH names a folder `node_modules`."""
+    (tmp_path / "model.toml").write_text(stamp_kit.MODEL)
+    done = stamp_kit.pipeline(chain, tmp_path, "grbl").run(PART)
+    (tmp_path / "part.nc").write_bytes(done.text)
+    words = ["node", str(HERE / "cncjs_reads.js"), str(tmp_path / "part.nc")]
+    node = shutil.which("node")
+    said = subprocess.run(words, capture_output=True, check=False) if node else None
+    if said is None or b"Cannot find module 'gcode-toolpath'" in said.stderr:
+        pytest.skip("gcode-toolpath is not installed: no program is drawn by what CNCjs has")
+    found = json.loads(said.stdout)
+    assert found["lines"] == len(done.text.splitlines())
+    agree(done.text, found["ends"])
+
+
+def agree(program: bytes, ends: list[list[float]]) -> None:
+    """Hold ends of moves, as somebody else sees them, to those of a program."""
+    path = gx.read(program, "grbl").path
     ours = corners(path.end[np.isfinite(path.end[:, :3]).all(axis=1), :3])
-    theirs = corners(np.array(found["ends"]))
+    theirs = corners(np.array(ends))
     assert theirs.shape == ours.shape
     assert np.abs(theirs - ours).max() < 1e-6
 

@@ -125,6 +125,8 @@ def test_stamped_programs_are_left_alone(hot: Path) -> None:
     [
         (("-o", "hot", "hot"), "GX751"),
         (("-o", "hot/done", "hot"), "GX751"),
+        (("-o", "hot/.gcxform", "hot"), "GX751"),
+        (("-o", "hot/.gcxform/claimed", "hot"), "GX751"),
         (("none",), "GX726"),
         (("-p", "hot/gcxform.toml", "none"), "GX901"),
         (("-p", "none.toml", "hot"), "GX709"),

@@ -95,8 +95,9 @@ class Folders:
         """Make what is not there. Raises FileError, and UsageError for places that cannot be."""
         if not self.folder.is_dir():
             raise FileError.one("GX901", f"there is no folder {self.folder} to be watched")
-        out = os.path.realpath(self.out)
-        if out in (os.path.realpath(each) for each in (self.folder, self.done, self.failed)):
+        out, hidden = (os.path.realpath(each) for each in (self.out, self.folder / HIDDEN))
+        taken = {os.path.realpath(each) for each in (self.folder, self.done, self.failed)}
+        if out in taken or Path(out).is_relative_to(hidden):
             message = f"results in {self.out} would be taken for programs, or for those done"
             raise UsageError.one("GX751", message, hint="-o with another folder")
         own = self.claimed, self.ready, self.proofs, self.staged
