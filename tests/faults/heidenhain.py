@@ -39,6 +39,8 @@ ONTO = "tests/test_klartext_approach.py"
 
 FRAMES = "tests/test_klartext_frames.py"
 TOOL_TESTS = "tests/test_klartext_tools.py"
+FREE = "plugins/gcxform_plugins/dialects/heidenhain/free.py"
+FREE_TESTS = "tests/test_klartext_free.py"
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
@@ -769,5 +771,54 @@ MUTATIONS = (
         'radius += float(self.deltas.get("DR", 0))',
         'radius += 0 * float(self.deltas.get("DR", 0))',
         f"{TOOL_TESTS}::test_a_contour_is_beside_it_by_the_radius_with_dr",
+    ),
+    Mutation(
+        "klartext: a line between two arcs leaves the first on its other side",
+        FREE,
+        "own = one.left * abs(one.begin - one.centre)",
+        "own = -one.left * abs(one.begin - one.centre)",
+        f"{FREE_TESTS}::test_the_contour_of_the_manual",
+    ),
+    Mutation(
+        "klartext: a line between two arcs of different size is parallel to their centres",
+        FREE,
+        "cmath.rect(1, -math.asin(off / abs(by)))",
+        "cmath.rect(1, 0 * math.asin(off / abs(by)))",
+        f"{FREE_TESTS}::test_the_contour_of_the_manual",
+    ),
+    Mutation(
+        "klartext: an arc of a free contour turns by CCA to the left",
+        FREE,
+        'cmath.rect(1, one.left * math.radians(one.data["CCA"]))',
+        'cmath.rect(1, math.radians(one.data["CCA"]))',
+        f"{FREE_TESTS}::test_elements_with_one_solution",
+    ),
+    Mutation(
+        "klartext: data of a free contour need not agree",
+        FREE,
+        "if abs(one.data.get(name, value) - value) > NEAR:",
+        "if abs(one.data.get(name, value) - value) > 1e9:",
+        f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
+    ),
+    Mutation(
+        "klartext: a free line goes back to its coordinate",
+        FREE,
+        "if abs(along) <= LEAST or by / along <= 0:",
+        "if abs(along) <= LEAST:",
+        f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
+    ),
+    Mutation(
+        "klartext: FLT leaves the direction before it",
+        FREE,
+        "if off > STRAIGHT:",
+        "if off > 400:",
+        f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
+    ),
+    Mutation(
+        "klartext: an open arc of a free contour is beside its lines",
+        FREE,
+        "first, second = one.begin + radius * 1j * one.along, to + radius * 1j * along",
+        "first, second = one.begin - radius * 1j * one.along, to + radius * 1j * along",
+        f"{FREE_TESTS}::test_elements_with_one_solution",
     ),
 )

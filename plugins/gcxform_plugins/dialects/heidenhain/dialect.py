@@ -28,7 +28,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | CC behind RND, CHF, CT, CR | whether it holds is not known: write it again | |
 | the first move in RL or RR, and R0 | end and begin square to the contour | 620 ISO, p. 146 |
 | APPR, DEP | as `approach.py` says | TNC7 |
-| LN, FK, PLANE | refused | |
+| FK | where its data have one solution, as `free.py` says; else refused | TNC 407, p. 5-66 |
+| LN, PLANE | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |

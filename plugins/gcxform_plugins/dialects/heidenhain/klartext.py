@@ -65,6 +65,7 @@ class Klartext(Cycles):
             "TRANS": self.transformed,
             "PATTERN": self.pattern,
             **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
+            **dict.fromkeys(("FL", "FLT", "FC", "FCT", "FPOL"), self.free),
             "FUNCTION": self._function_of,
         }
 

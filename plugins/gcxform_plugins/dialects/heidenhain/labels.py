@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.approach import Approaches
+from gcxform_plugins.dialects.heidenhain.fk import FreeContours
 
 NAME = r'(?:0*(\d{1,9})|"([^"]*)")'
 LABEL = re.compile(rf"LBL\s*{NAME}\s*", re.IGNORECASE)
@@ -40,7 +40,7 @@ class Call:
     local: tuple[tuple[str, float | None], ...] = ()
 
 
-class Labels(Approaches):
+class Labels(FreeContours):
     """Jumps to labels and back."""
 
     def __init__(self, *program: Any) -> None:
