@@ -172,6 +172,45 @@ def test_cycles_that_call_themselves_keep_what_follows():
     assert "IX+5" in written(program(*lines))[0]
 
 
+POCKET = "CYCL DEF 251 RECT ~", "Q215=0 ~ ;PLAN", "Q201=-20", "L IX+5 FMAX"
+DRILL = "CYCL DEF 200 D Q200=2 Q201=-Q5 Q206=9 Q202=5 Q210=0 Q203=+0 Q204=50 Q211=0"
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ("CYCL DEF 251 RECT Q215=0 Q201=-20",),
+        POCKET[:3],
+        ("CYCL DEF 200 DRILLING Q200=2 Q201=-Q9",),
+        ("CYCL DEF 200 DRILLING Q200=2 Q201=MAX",),
+        ("TCH PROBE 0.0 REF PLANE Q201 X-",),
+    ],
+)
+def test_what_a_cycle_is_told_is_no_more_what_was_known(lines):
+    text = program("Q201 = -5", *lines, "L Z+10 FMAX", "L IZ+Q201 FMAX")
+    assert written(text)[0] == text
+
+
+def test_what_a_probe_finds_is_not_known():
+    text = program("Q150 = -5", "TCH PROBE 414 A ~", "Q263=+37", "L Z+10 FMAX", "L IZ+Q150 FMAX")
+    assert written(text)[0] == text
+
+
+def test_a_pocket_of_several_lines_is_kept_whole():
+    text = program("L X+1 Y+1 Z+50 R0 FMAX", *POCKET, "CYCL CALL", "L IX+5 FMAX", "L X+1 FMAX")
+    said = written(text)
+    assert said[0] == text
+    assert "lines 3, 4, 5, 6, 7, 8, 9 (7) are kept" in said[1][0]
+
+
+def test_parameters_of_a_cycle_are_those_of_the_program():
+    lines = ("Q5 = 5", DRILL, "L X+1 FMAX M99", "L IX+5 FMAX", "L IZ+Q201 FMAX")
+    there = [line.replace("IX+5", "X+6").replace("IZ+Q201", "Z+45") for line in lines]
+    assert written(program(*lines))[0] == program(*there)
+    behind = (*lines[:2], "Q5 = 7", "L X+1 FMAX M99", "L IX+5 FMAX")
+    assert written(program(*behind))[0] == program(*behind)
+
+
 ARCS = """0 BEGIN PGM A MM
 1 L X+0 Y+0 Z+5 R0 FMAX M3
 2 CC X+5 Y+0

@@ -821,4 +821,25 @@ MUTATIONS = (
         "first, second = one.begin - radius * 1j * one.along, to + radius * 1j * along",
         f"{FREE_TESTS}::test_elements_with_one_solution",
     ),
+    Mutation(
+        "klartext: what a kept cycle is told is known from before",
+        BACK,
+        "self.q |= dict.fromkeys(named)",
+        "self.q |= dict.fromkeys(named - named)",
+        f"{WRITTEN}::test_what_a_cycle_is_told_is_no_more_what_was_known",
+    ),
+    Mutation(
+        "klartext: what a kept probe finds is known from before",
+        BACK,
+        'if words.startswith("TCH"):',
+        "if not words:",
+        f"{WRITTEN}::test_what_a_probe_finds_is_not_known",
+    ),
+    Mutation(
+        "klartext: a hole counts from a parameter that is another one now",
+        CYCLES,
+        "if key in self.refers or ",
+        "if ",
+        f"{WRITTEN}::test_parameters_of_a_cycle_are_those_of_the_program",
+    ),
 )

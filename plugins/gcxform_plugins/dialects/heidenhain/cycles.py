@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -17,13 +17,16 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
-from gcxform_plugins.dialects.heidenhain.words import exact, plain, written
+from gcxform_plugins.dialects.heidenhain.parameters import key_of
+from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
 CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
-PARAMETER = re.compile(rf"Q(\d{{1,4}})\s*=\s*({VALUE})(?![\w.,])")
+PARAMETER = re.compile(
+    rf"Q(\d{{1,4}})\s*=\s*(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?![\w.,])|\S*)"
+)
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
 STROKES = 200, 205
@@ -41,6 +44,8 @@ class Cycles(Datums):
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
         self.bounded = False
+        self.refers: set[str] = set()
+        """The parameters that the values of the hole have been taken from."""
         self.places: list[tuple[str, str]] = []
 
     def define(self, item: gx.Item) -> list[str]:
@@ -57,13 +62,12 @@ class Cycles(Datums):
         if number == 32:
             return self._tolerance(item, part, text)
         if number == 247:
-            return self.preset(item, self._parameters(text))
+            return self.preset(item, self._parameters(item, text))
         if number in HOLES:
-            self.hole, self.cycle = self._parameters(text), number
-            self.given(self.hole.items())
+            self.hole, self.cycle = self._parameters(item, text), number
             return []
         if number in PATTERNS:
-            return self._pattern(item, number, self._parameters(text))
+            return self._pattern(item, number, self._parameters(item, text))
         if number == 1:
             return self._peck(item, part, text)
         why = OTHERS.get(number, "a cycle of the control")
@@ -84,7 +88,7 @@ class Cycles(Datums):
         """PATTERN DEF: the places of holes, one by one."""
         self.places = []
         parts = [item.name.partition("DEF")[2]]
-        while self.lines[self.at - 1].partition(";")[0].rstrip().endswith("~"):
+        while goes_on(self.lines[self.at - 1]) and self.at < len(self.lines):
             parts.append(self.lines[self.at].upper().partition(";")[0])
             self.at += 1
         found = PLACE.sub(self._placed, " ".join(parts).replace("~", " "))
@@ -127,7 +131,9 @@ class Cycles(Datums):
     def assigned(self, key: str) -> None:
         """Forget a cycle of which a parameter is set: whether it then counts is not known."""
         hole = HOLES.get(self.cycle)
-        if hole is not None and key[1:].isdigit() and int(key[1:]) in hole.needs:
+        if hole is None:
+            return
+        if key in self.refers or (key[1:].isdigit() and int(key[1:]) in hole.needs):
             self.cycle = 0
 
     def _value(self, item: gx.Item, text: str) -> str:
@@ -154,16 +160,31 @@ class Cycles(Datums):
         self.bounded = found is not None
         return [f"G64 P{bound}" if Decimal(bound) > 0 else "G61"]
 
-    def _parameters(self, text: str) -> dict[int, Decimal]:
-        """Return the parameters of a cycle, from this line or from those behind it."""
-        parts = [text]
-        while self.lines[self.at - 1].rstrip().endswith("~") and self.at < len(self.lines):
+    def _parameters(self, item: gx.Item, text: str) -> dict[int, Decimal]:
+        """Return the parameters of a cycle, from this line or from those behind it.
+
+        They are those of the program as well. What is said by another word than a number or a
+        parameter is not known.
+        """
+        told: dict[int, Decimal] = {}
+        self.refers = set()
+        for found in PARAMETER.finditer(" ".join([text, *self.told_lines()])):
+            number, value, parameter = int(found[1]), found[2], found[3]
+            if parameter:
+                value = self.parameter(parameter, item)
+                self.refers.add(key_of(parameter.lstrip("+- ")))
+            if value:
+                told[number] = Decimal(plain(value))
+            self.q[f"Q{number}"] = float(told[number]) if value else None
+        return told
+
+    def told_lines(self) -> Iterator[str]:
+        """Yield the lines that go on with the statement of this line, and pass them."""
+        while goes_on(self.lines[self.at - 1]) and self.at < len(self.lines):
             if not PARAMETER_LINE.match(self.lines[self.at].upper()):
                 break
-            parts.append(self.lines[self.at].upper().partition(";")[0])
             self.at += 1
-        found = " ".join(parts)
-        return {int(m[1]): Decimal(plain(m[2])) for m in PARAMETER.finditer(found)}
+            yield self.lines[self.at - 1].upper().partition(";")[0]
 
     # --- holes ---
 
@@ -238,7 +259,7 @@ class Cycles(Datums):
             message = "a pattern whose first hole is reached from elsewhere than Q203 + Q204"
             raise self.refusal("GX215", message, item, "go up there in a line before")
         blocks = self._holes(item, places, hole)
-        self.given(told.items())  # whether they count for a cycle that is called next is not known
+        # whether they count for a cycle that is called next is not known
         self.hole = {n: v for n, v in self.hole.items() if told.get(n, v) == v}
         return blocks
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
-from decimal import Decimal
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -165,10 +163,6 @@ class Parameters(Labels):
 
     def assigned(self, key: str) -> None:
         """Take note of a parameter that is set."""
-
-    def given(self, numbers: Iterable[tuple[int, Decimal]]) -> None:
-        """Set what a cycle is told: its parameters are those of the program."""
-        self.q |= {f"Q{number}": float(value) for number, value in numbers}
 
     def value_of(self, name: str, item: gx.Item) -> str:
         """Return the number that `+Q1` stands for. Raises InputError."""

@@ -13,8 +13,10 @@ from operator import attrgetter
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.lines import Lines
+from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
+from gcxform_plugins.dialects.heidenhain.words import goes_on
 from gcxform_plugins.dialects.shared.keeping import KEEPABLE, KEEPS, KEPT
 
 ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
@@ -32,7 +34,7 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas"),
+    *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas", "refers"),
 )
 BEGUN = STATE.index("begun")
 state_of = attrgetter(*STATE)
@@ -108,11 +110,19 @@ class Programs(Runs):
         text = code(self.lines[self.line]).lstrip("/0123456789 \t").rstrip()
         words = text.upper()
         self.kept_lines.append((self.line, why))
+        words = " ".join([words, *self._continued()])
         if FROM_HERE.match(words):
             self._keep_rest(why)
         self._lose(items, words)
         number = zlib.crc32(text.encode("latin-1")) & 0xFFFFF
         return [f"{self.moving('G1')} {KEPT} P{number}".lstrip()]
+
+    def _continued(self) -> Iterator[str]:
+        """Yield the lines that go on with a line that is kept, and pass them."""
+        while goes_on(self.lines[self.at - 1]) and self.at < len(self.lines):
+            self.at += 1
+            self.kept_lines.append((self.at - 1, self.kept_lines[-1][1]))
+            yield code(self.lines[self.at - 1]).upper()
 
     def _lose(self, items: Sequence[gx.Item], words: str) -> None:
         """Forget what a line may have changed."""
@@ -124,6 +134,11 @@ class Programs(Runs):
         if "text" in said and not QUIET.match(words):
             self.q, self.side, self.aside = dict.fromkeys(self.q), "", True
             self.feed_lost, self.in_spindle, self.cycle = True, "", -1
+        elif "text" in said:
+            named = {key_of(name) for name in NAMED.findall(words)}
+            if words.startswith("TCH"):
+                named |= {f"Q{number}" for number in CONTROL}
+            self.q |= dict.fromkeys(named)
         elif said & {"feed", "per", "auto", "m"}:
             self.feed_lost = True
         if re.search(r"(?<![A-Z])(?:APPR|DEP|R[LR])(?![A-Z])|(?<![A-Z])R0?(?![\d.,A-Z])", words):

@@ -36,6 +36,11 @@ def exact(value: Decimal) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
+def goes_on(line: str) -> bool:
+    """Whether the next line goes on with the statement: `~` ends it, or stands before a comment."""
+    return line.rstrip().endswith("~") or line.partition(";")[0].rstrip().endswith("~")
+
+
 Point = tuple[float, float]
 Element = tuple[str, Point, Point | None]
 
