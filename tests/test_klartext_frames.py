@@ -99,6 +99,7 @@ def test_trans_is_the_same():
         (("M128", *TURN), "follows the tip"),
         (("TOOL CALL 1 Z", "L X+1 Y+1 RL F9", *TURN), "radius compensation"),
         (("TOOL CALL 1 Z", *MIRROR, "L X+1 Y+1 RL F9"), "in mirrored"),
+        (("TRANS MIRROR AXIS Z", HOLE, "L Z+20 FMAX", "CYCL CALL"), "along the tool"),
         (("CYCL DEF 8.1 A",), "a mirror image of A"),
         (("CYCL DEF 11.0", "CYCL DEF 11.1 SCL 0.5"), "a scale"),
         (("CYCL DEF 10.1 ROT",), "is not resolved"),
@@ -129,3 +130,11 @@ def test_g68_about_the_zero_is_cycle_10():
     assert places(read(made.text.decode(), start=START))[1] == pytest.approx(turned(10, 0))
     with pytest.raises(gx.GcxformError, match="about another point"):
         Pipeline(fanuc, DIALECT, (), Reading(START)).run(text % b"G68 X1. Y0. R30.")
+
+
+@pytest.mark.parametrize("turn", [TURN, ("PLANE SPATIAL SPA+0 SPB+3 SPC+0 STAY",)])
+def test_a_move_in_the_machine_loses_all_that_is_turned(turn):
+    moves = ("L X+5 Y+0 Z+3 R0 F100", "L X+100 FMAX M91", "L IY+5", "L IZ+1")
+    text = program("L X+0 Y+0 Z+20 F100", *turn, *moves)
+    made = Pipeline(DIALECT, DIALECT, (Absolute(),), Reading(START)).run(text.encode())
+    assert made.text.decode() == text

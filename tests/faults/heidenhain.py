@@ -796,7 +796,7 @@ MUTATIONS = (
     Mutation(
         "klartext: data of a free contour need not agree",
         FREE,
-        "if abs(one.data.get(name, value) - value) > NEAR:",
+        "if abs(one.data.get(name, value) - value) > near:",
         "if abs(one.data.get(name, value) - value) > 1e9:",
         f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
     ),
@@ -841,5 +841,26 @@ MUTATIONS = (
         "if key in self.refers or ",
         "if ",
         f"{WRITTEN}::test_parameters_of_a_cycle_are_those_of_the_program",
+    ),
+    Mutation(
+        "klartext: M91 in turned coordinates moves along their axes",
+        MOVES,
+        "if self.turn != 0 or self.mirrored is None:",
+        "if self.mirrored is None:",
+        f"{FRAMES}::test_a_move_in_the_machine_loses_all_that_is_turned",
+    ),
+    Mutation(
+        "klartext: what is kept tilts nothing",
+        BACK,
+        "if not PLAIN.match(words):",
+        "if not words:",
+        f"{FRAMES}::test_a_move_in_the_machine_loses_all_that_is_turned",
+    ),
+    Mutation(
+        "klartext: holes in mirrored Z go the other way",
+        CYCLES,
+        'if "Z" in (self.mirrored or ""):',
+        "if not item:",
+        f"{FRAMES}::test_what_controls_do_each_in_their_way_is_refused",
     ),
 )

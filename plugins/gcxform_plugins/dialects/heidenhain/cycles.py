@@ -108,8 +108,8 @@ class Cycles(Datums):
 
         Whether the tool goes from hole to hole there, or where it was, is only then the same.
         """
-        self.refuse_beside("a cycle", item)
-        if self.cycle not in HOLES or self.following or not self.places:
+        self._check_cycle(item)
+        if self.cycle not in HOLES or not self.places:
             raise self.refusal("GX215", "no cycle and places that are known here", item)
         height = self.hole.get(203, Decimal(0)) + self.hole.get(204, Decimal(0))
         if not self.hole.get(204) or self.stands_at("Z", item, "CYCL CALL PAT") != height:
@@ -188,11 +188,17 @@ class Cycles(Datums):
 
     # --- holes ---
 
-    def called(self, item: gx.Item) -> list[str]:
-        """M99 and CYCL CALL: the hole where the tool stands."""
+    def _check_cycle(self, item: gx.Item) -> None:
+        """Refuse a cycle where it would go another way. Raises InputError."""
         self.refuse_beside("a cycle", item)
         if self.following:
             self.refuse("a cycle while the control follows the tip", item)
+        if "Z" in (self.mirrored or ""):
+            self.refuse("a cycle in a mirror image along the tool", item)
+
+    def called(self, item: gx.Item) -> list[str]:
+        """M99 and CYCL CALL: the hole where the tool stands."""
+        self._check_cycle(item)
         if self.cycle in HOLES:
             return self._hole(item, self.hole)
         if self.cycle == 1:
@@ -243,8 +249,8 @@ class Cycles(Datums):
 
     def _pattern(self, item: gx.Item, number: int, told: dict[int, Decimal]) -> list[str]:
         """Cycles 220 and 221: the cycle defined last at once, over and over."""
-        self.refuse_beside("a cycle", item)
-        if self.cycle not in HOLES or self.following:
+        self._check_cycle(item)
+        if self.cycle not in HOLES:
             raise self.refusal("GX215", "no cycle that is known here has been defined", item)
         if told.keys() - {365} != {*PATTERNS[number]}:
             raise self.refusal("GX215", f"cycle {number} lacks a parameter, or has more", item)

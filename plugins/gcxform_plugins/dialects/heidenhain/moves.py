@@ -147,6 +147,8 @@ class Moves(Saying):
             words += f" {item.name}{self.number_of(item)}"
             self.lose(item.name)
             self.moved |= {item.name} & set(ROTARY)
+        if self.turn != 0 or self.mirrored is None:
+            self.lose("XYZ")  # an axis of the machine is none of theirs
         if not said.rapid:
             self._check_feed()
         if not words:

@@ -25,6 +25,8 @@ DECIDES = re.compile(r"FN\s*(?:9|10|11|12)\s*:|CALL\s+LBL", re.IGNORECASE)
 FROM_HERE = re.compile(r"SECTION|DECLARE|FUNCTION\s+MODE", re.IGNORECASE)
 QUIET = re.compile(r"(?:TOOL\s+DEF|BLK|TCH|CYCLE?\s+DEF|PATTERN|PLANE|TRANS|RND|CHF)(?![A-Z])")
 """Statements that set no parameter but those they name, and no feed."""
+PLAIN = re.compile(r"(?:TOOL\s+DEF|BLK|PATTERN|RND|CHF|CYCLE?\s+DEF\s*2\d\d(?!\d))(?![A-Z])")
+"""And that neither turn nor tilt what follows, whatever they say."""
 SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
 HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
@@ -131,6 +133,8 @@ class Programs(Runs):
         said = {item.kind for item in items}
         if "text" in said:
             self.places = []
+            if not PLAIN.match(words):
+                self.turn = self.mirrored = None
         if "text" in said and not QUIET.match(words):
             self.q, self.side, self.aside = dict.fromkeys(self.q), "", True
             self.feed_lost, self.in_spindle, self.cycle = True, "", -1
