@@ -109,6 +109,8 @@ def test_elements_with_one_solution(lines, wanted):
         (["FC DR- CCX+0 CCY-5", "FLT", "FCT DR- R50 CCX+1 CCY-5"], "no line touches"),
         (["FL X+1 CLSD-"], "without a CLSD"),
         (["FL X+1 X+2 Y+3"], "twice"),
+        (["TOOL CALL 1 Z", "L X+5 Y+1 RL", "FL AN+0 LEN5 R0"], "the side changes in lines"),
+        (["FL X+1 Y+2 RR"], "the side changes in lines"),
         (["FL X+1 Y+2 R5"], "data of an arc"),
         (["FL X+1 Y+2 DR+"], "data of an arc"),
         (["FC DR- CCX+0 CCY-5 CLSD+", "FLT CLSD-", "FCT DR- R5 CCX+9 CCY-5 CCA10"], "with CLSD"),

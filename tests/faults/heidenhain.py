@@ -863,4 +863,11 @@ MUTATIONS = (
         "if not item:",
         f"{FRAMES}::test_what_controls_do_each_in_their_way_is_refused",
     ),
+    Mutation(
+        "klartext: a free line in R0 stays beside the contour",
+        FREE,
+        'rest += " R0"',
+        'rest += ""',
+        f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
+    ),
 )

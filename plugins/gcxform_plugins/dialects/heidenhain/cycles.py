@@ -25,7 +25,7 @@ CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(
-    rf"Q(\d{{1,4}})\s*=\s*(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?![\w.,])|\S*)"
+    rf"Q(\d{{1,4}})\s*=\s*(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?=[\s~]|$)|\S*)"
 )
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")

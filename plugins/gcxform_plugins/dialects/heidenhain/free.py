@@ -98,8 +98,9 @@ def element_of(line: int, text: str) -> Element | None:
         return " "
 
     rest = WORD.sub(taken, text[head.end() :])
-    if data.get("R") == 0.0 and head[1][1] == "L":
+    if data.get("R") == 0.0:
         del data["R"]
+        rest += " R0"
     left = {"+": 1, "-": -1, "": 0}[signs.get("DR", "")]
     return Element(line, head[1], data, left, signs.get("CLSD", ""), " ".join(rest.split()))
 

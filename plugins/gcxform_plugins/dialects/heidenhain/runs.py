@@ -55,7 +55,7 @@ class Runs(Klartext):
 
     def __init__(self, *program: Any) -> None:
         super().__init__(*program)
-        self._plans: dict[int, Plan] = {}
+        self._plans: dict[Any, Plan] = {}
         self._known: dict[bool, dict[str, None]] = {True: {}, False: {}}
         self._runs: dict[bool, re.Pattern[str]] = {}
         self._text, self._starts = "", [0]
@@ -157,9 +157,9 @@ class Runs(Klartext):
                 shape, numbers = self.shape(line)
             except gx.InputError:
                 break  # it is refused when it is come to
-            plan = self._plans.get(id(shape))
+            plan = self._plans.get(shape)
             if plan is None and shape.routine:
-                plan = self._plans[id(shape)] = _plan(shape.items(numbers))
+                plan = self._plans[shape] = _plan(shape.items(numbers))
             if plan is None or max(map(len, numbers)) > LONGEST:
                 break
             if plan.off and numbers[plan.first + len(plan.axes)] != "0":
