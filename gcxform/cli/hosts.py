@@ -34,7 +34,7 @@ def command(name: str | None, pipeline: str | None, install: bool) -> None:
         return
     asked = Asked(pipeline=pipeline)
     if asked.file is None:
-        hint = f"-p FILE, or set {ENVIRONMENT}"
+        hint = f"-p FILE, or set {ENVIRONMENT}; gcxform machine new -p FILE PROGRAM writes one"
         raise UsageError.one("GX726", f"which pipeline is {name} to run?", hint=hint)
     _check(name, HOSTS[name], asked.build())
     text = text_of(name, Path(asked.file).absolute())
