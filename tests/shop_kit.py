@@ -86,7 +86,8 @@ class Drawn:
         lines = [f"G95 G1 F0.{self.random.randint(1, 9)} {self.words('XY', low, high)}"]
         lines += [f"{self.words('Z', low, high)}"] if self.chance(0.5) else []
         if self.control in TIMED and self.chance(0.5):
-            way = [f"{self.word(axis, low, high)} F{self.number(1, 40)}" for axis in "XYZ"]
+            times = self.random.sample(range(30, 60), 3)  # LinuxCNC knows no speed below 0.1 a min
+            way = [f"{self.word(a, low, high)} F{n}." for a, n in zip("XYZ", times, strict=True)]
             lines = [f"G93 G1 {way[0]}", *way[1:]]
         return ["G80", *lines, f"G94 F{self.number(60, 300)}"]
 

@@ -387,6 +387,15 @@ def test_planted(name):
         check_dialect(build())
 
 
+def test_a_hundred_tables_have_an_error_each():
+    """Each another one: of its control, what stands in it is no other's."""
+    built = [build() for build, _ in PLANTED.values()]
+    wrong = [
+        (kind.__mro__[1].__name__, {k: repr(v) for k, v in vars(kind).items()}) for kind in built
+    ]
+    assert len({repr(each) for each in wrong}) == len(PLANTED) >= 100
+
+
 def test_an_own_work_offset_by_a_word():
     """What the tables of Okuma have: G15 H1 and G15 H2, on purpose."""
     kind = codes(FANUC, G16=None, G15=v.frame("frame", "work", "H"))

@@ -71,7 +71,8 @@ class Control:
         return self.zeros[self.work][k] + self.local[k] + (self.length if k == 2 else 0.0)
 
     def go(self, code: int, end: list[float], arc: Arc | None = None) -> None:
-        feed = (self.mode, self.feed) if code else None
+        way = math.dist(self.at, end) if self.mode == 93 else 1.0  # a speed is that of its line
+        feed = (self.mode, self.feed * way) if code else None
         self.out.append(Move(code, tuple(self.at), tuple(end), feed, arc))
         self.at = list(end)
 
