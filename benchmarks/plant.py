@@ -15,13 +15,12 @@ import argparse
 import json
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from itertools import cycle, islice
 from pathlib import Path
@@ -34,6 +33,7 @@ QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 def main() -> int:
     """Measure, and print a table; return 1 if anything was lost or done twice."""
     asked = _arguments()
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # modules stay compiled, as where pip put them
     with tempfile.TemporaryDirectory(prefix="gcxform-plant-") as name, ExitStack() as stack:
         here = Path(name)
         count = _programs(here, asked.folders, asked.programs)
@@ -46,14 +46,12 @@ def main() -> int:
         words = [*CALL, "batch", *WAY, "-o", "out", "-j", str(asked.processes), *address, "many"]
         twice = _killed(here, words, count, cluster)
         if asked.scheduler:
-            stack.enter_context(scheduler(here, asked.processes))
+            cluster = stack.enter_context(scheduler(here, asked.processes))
             words[words.index("--scheduler") + 1] = _address(here)
         rest = count - len(_results(here))
-        batch = _measured([(words, here)])
+        batch = _measured([(words, here)], cluster)
         lost = count - len(_results(here))
-        again = _measured([(words, here)])
-    if asked.scheduler:  # its workers are no children of the call, and take the time
-        batch = batch[0], float("nan")
+        again = _measured([(words, here)], cluster)
     _print(count, asked.loop, loop, rest, batch, again, twice, lost)
     return 1 if twice or lost else 0
 
@@ -69,14 +67,14 @@ def _arguments() -> argparse.Namespace:
 
 
 def _programs(here: Path, folders: list[str], count: int) -> int:
-    """Put so many programs into `many`, of those that come through."""
+    """Put so many programs into `many`, of those that come through; no two are the same."""
     names = [os.path.abspath(each) for each in folders]
     subprocess.run([*CALL, "batch", *WAY, "-o", "first", *names], cwd=here, check=False, **QUIET)
     found = sorted(path for path in (here / "first").rglob("*.n*c") if path.is_file())
     for k, path in enumerate(islice(cycle(found), count)):
         place = here / "many" / f"{k // 500:03d}" / f"{k:05d}{path.suffix}"
         place.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(path, place)
+        place.write_bytes(path.read_bytes() + b"(program %d)\n" % k)
     return count
 
 
@@ -88,13 +86,22 @@ def _loop(here: Path, count: int) -> tuple[list[str], Path]:
     return ["sh", "loop.sh"], here
 
 
-def _measured(calls: list[tuple[list[str], Path]]) -> tuple[float, float]:
-    """Return the seconds of wall time, and of a processor."""
-    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+def _measured(
+    calls: list[tuple[list[str], Path]], cluster: Sequence[subprocess.Popen[bytes]] = ()
+) -> tuple[float, float]:
+    """Return the seconds of wall time, and of a processor: the call's and that of its cluster."""
+    before, began = _used(cluster), time.perf_counter()
     for words, folder in calls:
         subprocess.run(words, cwd=folder, check=False, **QUIET)  # type: ignore[call-overload]
-    wall, after = time.perf_counter() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
-    return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return time.perf_counter() - began, _used(cluster) - before
+
+
+def _used(cluster: Sequence[subprocess.Popen[bytes]]) -> float:
+    """Return the seconds of a processor that ended calls and a cluster have taken."""
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN)
+    stats = [Path(f"/proc/{each.pid}/stat").read_text().rpartition(")")[2] for each in cluster]
+    ticks = sum(int(word) for stat in stats for word in stat.split()[11:13])
+    return ended.ru_utime + ended.ru_stime + ticks / os.sysconf("SC_CLK_TCK")
 
 
 def _results(here: Path) -> dict[str, int]:

@@ -21,9 +21,12 @@ from gcxform.cli.common.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
+from gcxform.modal.noted import Assigned
 from gcxform.proof.verify import Verifier
+from gcxform.system.records import Records
 from gcxform.system.worker import DIED, Here, Process, Relay, _may_copy, ahead, relay, worker
 from gcxform.testing.cases import check_outcome, outcome
+from gcxform.toolpath.path import Event
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "memfd_create"), reason="no processes here")
 
@@ -37,6 +40,20 @@ class Adding:
     def add(self, number):
         self.total += number
         return self.total, os.getpid()
+
+
+EVENTS = (Event(3, "G54"), Event(4, "DWELL", (("seconds", 0.5),), 7, True), Event(0, "M3", (), -1))
+
+
+@pytest.mark.parametrize("made", [(), EVENTS, (Assigned(4, 1, 2.5), Assigned(6, "<a>", 0.0, "#1"))])
+def test_records_arrive_as_they_were_given(made):
+    given = Records(made)
+    with Process(lambda *records: records) as one:
+        one.begin(given, made)
+        assert one.end() == (given, made) == (made, made)
+    arrived = pickle.loads(pickle.dumps(given))
+    assert type(arrived) is Records
+    assert [type(each) for each in arrived] == [type(each) for each in made]
 
 
 @pytest.mark.parametrize("kind", [Here, Process])

@@ -8,6 +8,7 @@ import numpy as np
 
 from gcxform.modal.lines import Lines
 from gcxform.system.arrays import Ints
+from gcxform.system.records import Records
 from gcxform.toolpath.path import Event
 
 SWITCHED = "/"
@@ -39,7 +40,7 @@ def events_of(
             events.append(Event(where, what, values, line + first_line))
             after.append(shape.after)
     if not within and not lines.unknown:
-        return tuple(events)
+        return Records(events)
     rank = [2 * each for each in after]
     for first, behind, event in within:
         row = int(np.searchsorted(rows, first)) + behind
@@ -50,7 +51,7 @@ def events_of(
         events.append(Event(row, each.text, (), each.line + first_line))
         rank.append(-1)
     order = np.lexsort((rank, [event.line for event in events], [event.row for event in events]))
-    return tuple(events[number] for number in order.tolist())
+    return Records(events[number] for number in order.tolist())
 
 
 def _value(lines: Lines, what: str, address: str, number: int) -> tuple[str, float]:

@@ -19,8 +19,15 @@ from gcxform.toolpath.frames import Frame, Matrix, Vector
 from gcxform.values import dataclass
 
 NO_TOOL = (0.0, 0.0, 0.0)
-UNFRAMED: Final = frozenset({"work", "known", "in_spindle", "changes", "homes", "written"})
-"""Fields on which the frame of a work offset does not depend: it is looked up by that offset."""
+UNFRAMED: Final = frozenset(
+    {
+        *("known", "in_spindle", "changes", "homes", "written", "number", "lost_numbers", "tilted"),
+        *("work", "tool", "tool_name", "tilt", "tip"),
+    }
+)
+"""Fields on which no frame depends, and those by which frames are looked up."""
+FRAMES_AT_MOST: Final = 256
+"""So many frames are kept: a program may have a length of its own for every block."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +99,10 @@ class FrameState:
     tilt: str = ""
     tip: str = ""
     tilted: int = 0
-    made: dict[str, Frame] = field(default_factory=dict, init=False, repr=False, compare=False)
-    """The frames of work offsets that were asked for."""
+    made: dict[tuple[str, Vector, str, str, str], Frame] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """The frames of work offsets, tools and tilted planes that were asked for."""
 
     @classmethod
     def at_start(
@@ -169,9 +178,13 @@ class FrameState:
 
     def frame(self) -> Frame:
         """Return the frame in force."""
-        if self.work not in self.made:
-            self.made[self.work] = self._frame()
-        return self.made[self.work]
+        key = self.work, self.tool, self.tool_name, self.tilt, self.tip
+        frame = self.made.get(key)
+        if frame is None:
+            if len(self.made) >= FRAMES_AT_MOST:
+                self.made.clear()
+            frame = self.made[key] = self._frame()
+        return frame
 
     def _frame(self) -> Frame:
         zero = self.zero_of(self.work)

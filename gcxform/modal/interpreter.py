@@ -31,6 +31,7 @@ from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, Stat
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.records import Records
 from gcxform.toolpath.path import Toolpath
 from gcxform.values import dataclass
 
@@ -160,8 +161,8 @@ class Interpreter:
             lines.shape,
             before,
             lines.window.value,
-            tuple(lines.assigned),
-            tuple(lines.unknown),
+            Records(lines.assigned),
+            Records(lines.unknown),
             lines.perhaps,
             lines.loses_position(),
             tuple(moves.track.zeroed),

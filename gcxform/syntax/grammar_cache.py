@@ -11,9 +11,10 @@ import hashlib
 import os
 import sys
 from contextlib import suppress
-from importlib.resources import files
+from importlib import import_module
 from importlib.util import cache_from_source
 from pathlib import Path
+from pkgutil import get_data
 from typing import Any
 
 import lark
@@ -30,8 +31,8 @@ OF_MAKING = frozenset({"import_paths"})  # options that reading the tables does 
 
 def grammar(package: str, name: str) -> lark.Lark:
     """Return the parser of a grammar in a package, which may import from it and from ours."""
-    source = files(package).joinpath(name + SUFFIX)
-    if not isinstance(source, Path):  # in a zip file: there is no place beside it
+    source = _folder(package) / (name + SUFFIX)
+    if not source.is_file():  # in a zip file: there is no place beside it
         return _made(package, name)
     place, digest = Path(cache_from_source(str(source))).with_suffix(".lalr"), _digest(package)
     with suppress(Exception):  # damaged tables can raise anything
@@ -45,10 +46,17 @@ def grammar(package: str, name: str) -> lark.Lark:
     return made
 
 
+def _folder(package: str) -> Path:
+    """Return where a package lies; `importlib.resources` would load what reads zip files for it."""
+    return Path(import_module(package).__path__[0])
+
+
 def _made(package: str, name: str) -> lark.Lark:
+    text = get_data(package, name + SUFFIX)
+    assert text is not None  # only a loader that can read no data returns that
     loaders = [FromPackageLoader(package, ("",)), FromPackageLoader(GRAMMARS, ("",))]
     return lark.Lark(
-        files(package).joinpath(name + SUFFIX).read_text("utf-8"),
+        text.decode("utf-8"),
         parser="lalr",
         import_paths=loaders,
         propagate_positions=True,
@@ -88,10 +96,9 @@ def _digest(package: str) -> bytes:
     made_by = f"{lark.__version__} {sys.version}".encode()
     digest = hashlib.sha256(made_by + Path(__file__).read_bytes())
     for folder in dict.fromkeys([package, GRAMMARS]):
-        for path in sorted(files(folder).iterdir(), key=lambda path: path.name):
-            if path.name.endswith(SUFFIX):
-                text = path.read_bytes()
-                digest.update(f"\n{folder} {path.name} {len(text)}\n".encode() + text)
+        for path in sorted(_folder(folder).glob(f"*{SUFFIX}")):
+            text = path.read_bytes()
+            digest.update(f"\n{folder} {path.name} {len(text)}\n".encode() + text)
     return digest.digest()
 
 

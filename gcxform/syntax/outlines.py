@@ -82,12 +82,19 @@ class Outlines:
 
 def outline(text: bytes, lines: Ints, start: Ints, end: Ints, comments: Comments) -> Outlines:
     """Return the outlines of some lines of a window; `start`, `end` are offsets of its lines."""
-    begin, stop = start[lines], end[lines]
-    joined = b"".join(
-        [text[a:b] + b"\n" for a, b in zip(begin.tolist(), stop.tolist(), strict=True)]
-    )
-    scanned = _Scan(joined, stop - begin + 1, comments)
+    begin, length = start[lines], end[lines] - start[lines] + 1
+    scanned = _Scan(_joined(text, begin, length), length, comments)
     return scanned.outlines(lines, begin)
+
+
+def _joined(text: bytes, begin: Ints, length: Ints) -> bytes:
+    """Return some lines of a text, each with a line end, which `length` (n,) counts."""
+    raw = np.frombuffer(text + b"\n", np.uint8)  # the last line may have none
+    last = np.cumsum(length)
+    at = np.arange(int(last[-1])) + np.repeat(begin - (last - length), length)
+    joined = raw[at]
+    joined[last - 1] = 10
+    return bytes(joined)
 
 
 class _Scan:
@@ -201,7 +208,7 @@ class _Scan:
         shift = (offset - self.begin)[line[order]]
         return Outlines(
             lines[clear],
-            [keys[line] for line in clear.tolist()],
+            keys if len(clear) == len(keys) else [keys[line] for line in clear.tolist()],
             first[clear],
             count[clear],
             begin + shift,
@@ -219,8 +226,8 @@ class _Scan:
         keep = np.cumsum(edge[:-1], dtype=np.int8) == 0
         copy = self.raw.copy()
         copy[start] = np.where(comment, np.where(self.raw[start] == 40, COMMENT, TAIL), NUMBER)
-        lines = copy[keep].tobytes().split(b"\n")[:-1]
-        return [BEGIN + line for line in lines]
+        lines = BEGIN + bytes(copy[keep]).replace(b"\n", b"\n" + BEGIN)
+        return lines.split(b"\n")[:-1]
 
 
 def _inside(at: Ints, start: Ints, end: Ints) -> Flags:

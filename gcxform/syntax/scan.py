@@ -20,7 +20,6 @@ from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
 from gcxform.syntax.outlines import outline
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints
-from gcxform.system.distinct import distinct
 from gcxform.values import dataclass
 
 LETTER, DIGIT, POINT, SIGN, BLANK, END, CODE, OTHER = 0, 1, 2, 3, 4, 5, 6, 7
@@ -88,8 +87,11 @@ def scan(text: bytes, first_line: int, table: ShapeTable) -> Window:
     raw = np.frombuffer(text, np.uint8)
     kind = np.frombuffer(text.translate(CLASS), np.uint8)
     start, end, following = _lines(raw, text)
+    odd = _with_others(kind, start)
+    if odd.any():  # nothing of them is looked for here
+        kind = np.where(np.repeat(odd, following - start), np.uint8(END), kind)
     runs = _runs(text, raw, kind)
-    own = _lines_by_themselves(kind, runs, following)
+    own = _lines_by_themselves(odd, runs, following)
     shape, numbers = _shapes(raw, kind, runs, own, (start, end), text, table)
     return Window(text, first_line, start, end, following, shape, *numbers)
 
@@ -112,6 +114,13 @@ def _lines(raw: Bytes, text: bytes) -> tuple[Ints, Ints, Ints]:
             np.append(following, len(raw)),
         )
     return np.append(0, following[:-1]), following - width, following
+
+
+def _with_others(kind: Bytes, start: Ints) -> Flags:
+    """Return which lines have more than letters, numbers and blanks."""
+    if not len(kind):
+        return np.zeros(len(start), np.bool_)
+    return np.logical_or.reduceat(kind == OTHER, start)
 
 
 @dataclass(slots=True)
@@ -168,12 +177,12 @@ def _points(kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints) ->
     return point, good
 
 
-def _lines_by_themselves(kind: Bytes, runs: _Runs, following: Ints) -> Ints:
-    """Return the lines that lark has to read one by one, ascending."""
-    odd = np.concatenate([np.flatnonzero(kind == OTHER), runs.start[~runs.is_plain]])
-    if not len(odd):
-        return odd
-    return distinct(np.searchsorted(following, odd, side="right"))
+def _lines_by_themselves(odd: Flags, runs: _Runs, following: Ints) -> Ints:
+    """Return the lines that are no words and plain numbers, ascending: the odd ones among them."""
+    wrong = np.searchsorted(following, runs.start[~runs.is_plain], side="right")
+    odd = odd.copy()
+    odd[wrong] = True
+    return np.flatnonzero(odd)
 
 
 def _shapes(
@@ -192,13 +201,15 @@ def _shapes(
     if table.comments is not None and len(own):
         found = outline(text, own, start, end, table.comments)
         outlined = table.outlined(found, text, start, end)
-        has_shape = outlined >= 0
-        for nth in np.flatnonzero(has_shape).tolist():
-            keys[int(found.lines[nth])] = found.keys[nth]
-        own = np.setdiff1d(own, found.lines[has_shape], assume_unique=True)
+        alone = np.zeros(len(start), np.bool_)
+        alone[own] = True
+        alone[found.lines[outlined >= 0]] = False
+        own = np.flatnonzero(alone)
     for line in own.tolist():
         keys[line] = OWN + text[int(start[line]) : int(end[line])]
     shape = table.look_up(keys, text, start, end)
+    if found is not None:
+        shape[found.lines] = np.where(outlined >= 0, outlined, shape[found.lines])
     slots = ~runs.is_code
     first = _first_numbers(table, shape, odd, runs.start[slots], start)
     value = runs.mantissa[slots] / TEN_TO[np.clip(runs.decimals[slots], 0, LONGEST)]

@@ -14,6 +14,7 @@ position is lost until it is programmed again.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -24,7 +25,7 @@ Vector = tuple[float, ...]
 Matrix = tuple[tuple[float, float, float], ...]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Frame:
     """How the words of a block become positions.
 
@@ -51,12 +52,12 @@ class Frame:
     following: bool | None = None
     called: bool = False
 
-    @property
+    @cached_property
     def shifts_only(self) -> bool:
         """Whether words are positions but for a shift."""
         return self.matrix is None and not self.diameter
 
-    @property
+    @cached_property
     def plain(self) -> bool:
         """Whether words are positions."""
         return self.shifts_only and not any(self.shift)
@@ -69,6 +70,24 @@ class Frame:
         """Return the words (n, axes) of positions (n, axes)."""
         local = self.local(positions)
         return _scaled(local, 2.0) if self.diameter else local
+
+    def point(self, words: list[float]) -> list[float]:
+        """Return the position of words, a number for each axis: `positions` of one block."""
+        if self.plain:
+            return words
+        if self.shifts_only:
+            return [word + shift for word, shift in zip(words, self.shift, strict=True)]
+        found: list[float] = self.positions(np.array([words]))[0].tolist()
+        return found
+
+    def words_of(self, point: list[float]) -> list[float]:
+        """Return the words of a position, a number for each axis: `words` of one."""
+        if self.plain:
+            return point
+        if self.shifts_only:
+            return [place - shift for place, shift in zip(point, self.shift, strict=True)]
+        found: list[float] = self.words(np.array([point]))[0].tolist()
+        return found
 
     def placed(self, local: Floats) -> Floats:
         """Return positions (n, k) of coordinates (n, k) in this frame; k is 3 or all axes."""

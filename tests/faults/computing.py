@@ -220,6 +220,20 @@ MUTATIONS = (
         "tests/properties/test_outlines.py",
     ),
     Mutation(
+        "outlines: a line that is not clear gives its outline to the next",
+        "gcxform/syntax/outlines.py",
+        "keys if len(clear) == len(keys) else",
+        "keys if True else",
+        "tests/properties/test_reading.py",
+    ),
+    Mutation(
+        "outlines: a line that has none has the last shape there is",
+        "gcxform/syntax/scan.py",
+        "np.where(outlined >= 0, outlined, shape[found.lines])",
+        "outlined",
+        "tests/properties/test_reading.py",
+    ),
+    Mutation(
         "outlines: columns may be infinite",
         "gcxform/modal/expressions/compiled.py",
         "    if not np.isfinite(result).all():\n        raise NoColumnError\n    return result",

@@ -52,9 +52,23 @@ MUTATIONS = (
     Mutation(
         "frames: the frame of another tool is kept",
         "gcxform/modal/frame_state.py",
-        '"in_spindle", "changes", "homes"',
-        '"in_spindle", "changes", "tool", "homes"',
+        "key = self.work, self.tool, self.tool_name",
+        "key = self.work, NO_TOOL, self.tool_name",
         ROADS,
+    ),
+    Mutation(
+        "frames: a block goes where the zero of the machine is, and not that in force",
+        "gcxform/toolpath/frames.py",
+        "[word + shift for word, shift in",
+        "[word + 0.0 * shift for word, shift in",
+        SHIFTS,
+    ),
+    Mutation(
+        "frames: the words of a place are those of the machine",
+        "gcxform/toolpath/frames.py",
+        "[place - shift for place, shift in",
+        "[place - 0.0 * shift for place, shift in",
+        SHIFTS,
     ),
     Mutation(
         "frames: frames are kept whatever has changed",

@@ -63,8 +63,8 @@ MUTATIONS = (
     _macro(
         "a hole that only the machine knows is where the axis stood",
         "gcxform/modal/moves/cycle_patterns.py",
-        "words[self._lost.get(first, [])] = np.nan",
-        "words[[]] = np.nan",
+        "            words[axis] = np.nan",
+        "            del axis",
         "flow/fanuc-cycle-place-unknown",
     ),
     _macro(

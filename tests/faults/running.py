@@ -72,6 +72,13 @@ MUTATIONS = (
         "tests/test_worker.py",
     ),
     Mutation(
+        "records: fields arrive in another order",
+        "gcxform/system/records.py",
+        "(each.name for each in fields(kind))",
+        "sorted(each.name for each in fields(kind))",
+        "tests/test_worker.py",
+    ),
+    Mutation(
         "reader: a table that was begun anew is gone on with",
         "gcxform/modal/reader.py",
         "        if not known:\n            self.table = new_table(self.dialect)\n",

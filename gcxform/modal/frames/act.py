@@ -6,13 +6,13 @@ What a control leaves open, or what is known of it from hearsay only, is refused
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.state import Reading
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.path import Plane
-from gcxform.values import dataclass
 
 
 class ActError(Exception):
@@ -25,9 +25,8 @@ class ActError(Exception):
         self.hint = hint
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """A block that acts: its code, and all that its effect depends on.
+class Asked(NamedTuple):
+    """A block that acts: its code, and all that its effect depends on; it is made for each.
 
     words     numbers of the words it takes, lengths in mm, by address
     written   the same numbers as they stand in the block

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isnan
+
 import numpy as np
 
 from gcxform.catalogue.offers import tool_said
@@ -13,7 +15,7 @@ BEFORE = "the H before the program"
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
-    tool = -1 if np.isnan(asked.tool_word) else int(asked.tool_word)
+    tool = -1 if isnan(asked.tool_word) else int(asked.tool_word)
     return replace(state, in_spindle=tool, changes=state.changes + 1)
 
 
@@ -189,12 +191,13 @@ def set_in_table(state: FrameState, number: int) -> FrameState:
 
 def length_vector(state: FrameState, asked: Asked) -> FrameState:
     """G43.1: the vector given."""
-    vector = np.array(state.tool)
+    vector = [*state.tool]
     for axis, value in asked.axes.items():
         if axis not in asked.dialect.tool_rule.length_axes:
             raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
         vector[asked.column(state, axis)] = value
-    return state.with_tool(tuple(vector.tolist()), "G43.1")
+    x, y, z = vector
+    return state.with_tool((x, y, z), "G43.1")
 
 
 def offset_of_tool(state: FrameState, asked: Asked) -> FrameState:

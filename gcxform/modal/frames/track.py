@@ -164,7 +164,7 @@ class Track:
         step = self.lines.reading.control.get(LENGTH_STEP)
         if not self.dialect.tool_rule.length_may_move or step == "shifts":
             return np.nan
-        word = float(old.words(self.state.position[None, :])[0][2])
+        word = old.words_of(self.state.position.tolist())[2]
         self._lose(line, 4)
         return word if step == "moves" else np.nan
 
@@ -172,9 +172,9 @@ class Track:
         """Let an axis stand where a word of the frame in force leads, if that is known."""
         if not isfinite(word) or self.frame.matrix is not None:
             return
-        words = self.frame.words(self.state.position[None, :])[0].copy()
+        words = list(self.frame.words_of(self.state.position.tolist()))
         words[k] = word
-        self.state.position[k] = self.frame.positions(words[None, :])[0][k]
+        self.state.position[k] = self.frame.point(words)[k]
 
     def _upright(self) -> bool:
         """Whether all rotary axes are known to be at 0, where the tip is as far as the axes are."""
@@ -192,7 +192,7 @@ class Track:
     def enter(self, line: int, old: Frame) -> None:
         """Note the frame that is in force from a line on, if it is another one."""
         new = self.state.frames.frame()
-        if new != old:
+        if new is not old and new != old:
             if new.origin != old.origin:
                 pairs = enumerate(zip(old.origin, new.origin, strict=True))
                 self._lose(line, sum(1 << k for k, (was, now) in pairs if was != now))
@@ -344,10 +344,10 @@ class Track:
         if not own.any():
             return constant(0, len(own), np.int64)
         named = np.zeros(len(own), np.int64)
-        for line in np.flatnonzero(own).tolist():
-            words = self.words_on(line) or self.axes  # G28 alone is of all axes
-            named[line] = sum(1 << k for k, axis in enumerate(self.axes) if axis in words)
-        return named
+        for axis, (_, has) in self._named_axes:
+            named += has.astype(np.int64) << self.axes.index(axis)
+        named[named == 0] = (1 << len(self.axes)) - 1  # G28 alone is of all axes
+        return np.where(own, named, 0)
 
     def _refuse_steps(self, which: Flags, axis: str, first: int, lost: Flags | None) -> None:
         """Refuse incremental words of lines, counted from the first, that begin nowhere known."""

@@ -77,9 +77,11 @@ def note_way(track: Track, line: int) -> None:
     Its block stays as it stands, as the moves here do, and no end of it is known. Another control
     may know more of where it begins.
     """
+    if not track.modes.incremental[line]:
+        return
     words = track.words_on(line) if not track.lines.reading.crosses else {}
     named = [track.axes.index(axis) for axis in words]
-    if track.modes.incremental[line] and np.isnan(track.state.position[named]).any():
+    if np.isnan(track.state.position[named]).any():
         (way,) = _turned(track, np.array([line]), track.frame).tolist()
         each = zip(track.axes, way, strict=True)
         said = (f"{axis}{value + 0.0:.6f}" for axis, value in each if value or axis in words)

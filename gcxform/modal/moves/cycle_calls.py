@@ -73,6 +73,12 @@ class CallColumns:
             self._columns[address] = self._column(address)
         return np.asarray(self._columns[address][here])
 
+    def number(self, address: str, line: int) -> float:
+        """Return a word on one line, nan where there is none; a length in mm."""
+        if address not in self._columns:
+            self._columns[address] = self._column(address)
+        return float(self._columns[address][line])
+
     def _column(self, address: str) -> Floats:
         """Return a word on all lines of the window, nan where it is none of a call's."""
         if not address:

@@ -16,12 +16,12 @@ import numpy as np
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.cycles.expansion import Calls, Cycles
 from gcxform.modal.cycles.stretch import Mode, Stretch
-from gcxform.modal.frames.track import Break, Track
+from gcxform.modal.frames.track import PLANES, Break, Track
 from gcxform.modal.moves.cycle_calls import CallColumns
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import union
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
@@ -41,7 +41,7 @@ class _Followed:
     last: int
     plane: Plane
     unit: float
-    words: Floats
+    words: list[float]
     frame: int
     dwell: float
     stretch: Stretch | None
@@ -123,23 +123,27 @@ class Drilling:
     def _follow(self, first: int, last: int) -> None:
         """Read a stretch of calls."""
         assert self.cycles is not None
-        track, plane = self.track, Plane(int(self.modes.plane[first]))
+        track, plane = self.track, PLANES[self.modes.plane[first]]
         unit = INCH if self.modes.inch[first] else 1.0
-        words = track.frame.words(track.state.position[None, :])[0]
-        words[self._lost.get(first, [])] = np.nan  # a word without a value looks absent
+        words = list(track.frame.words_of(track.state.position.tolist()))
+        for axis in self._lost.get(first, ()):
+            words[axis] = np.nan  # a word without a value looks absent
         after = words.copy()
         stretch, dwell = None, self.cycles.mode.dwell
         self._refuse_other_zero(first, last, plane.axes[2])
         if not track.frame.polar and self._is_plain(first, last):
-            after[list(plane.axes)] = self._plain_end(first, last, words, plane)
+            end = self._plain_end(first, last, words, plane)
         else:
-            calls = self.columns.calls_on(slice(first, last), words[list(plane.axes)], plane, unit)
+            before = np.array([words[axis] for axis in plane.axes])
+            calls = self.columns.calls_on(slice(first, last), before, plane, unit)
             calls = self._in_coordinates(calls, slice(first, last))
             stretch = self.cycles.follow(calls)
-            after[list(plane.axes)] = stretch.after[-1]
+            end = stretch.after[-1].tolist()
+        for axis, place in zip(plane.axes, end, strict=True):
+            after[axis] = place
         frame = len(track.frames) - 1
         self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
-        track.state.position = track.frame.positions(after[None, :])[0].copy()
+        track.state.position = np.array(track.frame.point(after))
         if self._placeless[first]:
             self._leave_open(first, words, after)
         if self._has_manual and (self.modes.cycle[first:last] == MANUAL).any():
@@ -183,13 +187,13 @@ class Drilling:
         changes = self.columns.changes_until[last] - self.columns.changes_until[first + 1]
         return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
 
-    def _plain_end(self, first: int, last: int, words: Floats, plane: Plane) -> list[float]:
+    def _plain_end(self, first: int, last: int, words: list[float], plane: Plane) -> list[float]:
         """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
         assert self.cycles is not None
-        before = [float(words[axis]) for axis in plane.axes]
+        before = [words[axis] for axis in plane.axes]
         place = self.columns.last("P", last - 1)
         if place >= first:
-            self.cycles.mode = Mode(dwell=float(self.columns.word("P", place)))
+            self.cycles.mode = Mode(dwell=self.columns.number("P", place))
         end = [
             self._arrived("XYZ"[axis], first, last, standing)
             for axis, standing in zip(plane.axes[:2], before, strict=False)
@@ -198,7 +202,7 @@ class Drilling:
         if called < first:
             return [*end, initial]
         place = self.columns.last("R", called)
-        clearance = float(self.columns.word("R", place)) if place >= first else np.nan
+        clearance = self.columns.number("R", place) if place >= first else np.nan
         if self.modes.incremental[called]:
             clearance += initial
         high = bool(self.columns.common.initial[called])
@@ -208,7 +212,7 @@ class Drilling:
         """Return where an axis of the plane is after a plain stretch."""
         place, steps = self.columns.last(axis, last - 1), self.columns.increments_along(axis)
         placed = place >= first
-        word = float(self.columns.word(axis, place)) if placed else before
+        word = self.columns.number(axis, place) if placed else before
         if steps is None or self.columns.added_until[first] == self.columns.added_until[last]:
             return word
         moved = np.cumsum(steps[first:last])
@@ -276,7 +280,7 @@ class Drilling:
                 found.setdefault(each.line, []).append(axis)
         return found
 
-    def _leave_open(self, line: int, words: Floats, after: Floats) -> None:
+    def _leave_open(self, line: int, words: list[float], after: list[float]) -> None:
         """Let go of the level behind a call, if it depends on whether the call drills."""
         normal = Plane(int(self.modes.plane[line])).axes[2]
         if after[normal] != words[normal]:
@@ -288,8 +292,7 @@ class Drilling:
         if stretches:
             return stretches
         assert self.cycles is not None
-        axes = list(followed[0].plane.axes)
-        positions = np.array([one.words[axes] for one in followed])
+        positions = np.array([one.words for one in followed])[:, list(followed[0].plane.axes)]
         calls = self.columns.calls_on(line, positions[0], followed[0].plane, followed[0].unit)
         dwells = np.array([one.dwell for one in followed])
         return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]

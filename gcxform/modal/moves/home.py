@@ -5,6 +5,8 @@ So does G31, which is a probing move for its block alone.
 
 from __future__ import annotations
 
+from math import isfinite, isnan, nan
+
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, Severity
@@ -16,7 +18,6 @@ from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Own
 from gcxform.modal.moves.spindle_and_probe import probe
 from gcxform.modal.noted import AT, WayHome
-from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 
@@ -63,20 +64,20 @@ def _reference(track: Track, line: int, act: Act) -> str:
     return f"{act.code} P{number:g}"
 
 
-def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, Floats]]) -> Own:
+def _rows(track: Track, line: int, form: Form, moves: list[tuple[int, list[float]]]) -> Own:
     if moves:
-        track.state.position = moves[-1][1].copy()
+        track.state.position = np.array(moves[-1][1])
     return Own(line, form, moves, len(track.frames) - 1)
 
 
 def _home(track: Track, line: int, code: str) -> Own:
     """G28: rapid over the point given, then with the axes named to the reference point."""
     words = track.words_on(line)
-    moves: list[tuple[int, Floats]] = []
+    moves: list[tuple[int, list[float]]] = []
     if words:
         note_way(track, line)
         moves.append((Kind.RAPID, _reached(track, line, words)))
-        _warn_of_plunge(track, line, code, float(moves[0][1][2]))
+        _warn_of_plunge(track, line, code, moves[0][1][2])
     elif not track.dialect.motion_rule.g28_without_axes:
         track.findings.add(
             line,
@@ -85,13 +86,13 @@ def _home(track: Track, line: int, code: str) -> Own:
             hint="name the axes, one after another",
         )
         return _rows(track, line, Form.HOME, moves)
-    home = (moves[-1][1] if moves else track.state.position).copy()
+    home = list(moves[-1][1]) if moves else track.state.position.tolist()
     _refuse_one_of_turned(track, line, code, words)
     place = track.state.frames.homes.get(code, {})
     for k, axis in enumerate(track.axes):
         if axis in words or (not words and axis != EXTRUDER):
-            home[k] = _in_frame(track, k, place.get(axis, np.nan))
-            track.note_lost(int(np.isnan(home[k])) << k)
+            home[k] = _in_frame(track, k, place.get(axis, nan))
+            track.note_lost(int(isnan(home[k])) << k)
     _note_machine(track, line, code, words, home)
     rows = _rows(track, line, Form.HOME, [*moves, (Kind.RAPID, home)])
     if track.dialect.motion_rule.g28_ends_length:
@@ -100,15 +101,15 @@ def _home(track: Track, line: int, code: str) -> Own:
 
 
 def _note_machine(
-    track: Track, line: int, code: str, words: dict[str, float], home: Floats
+    track: Track, line: int, code: str, words: dict[str, float], home: list[float]
 ) -> None:
     """Note the frame of the machine, if the block goes nowhere but home, and home is known."""
-    frames = track.state.frames
-    named = [track.axes.index(axis) for axis in words] or [
-        k for k, axis in enumerate(track.axes) if axis in frames.homes.get("G28", {})
-    ]
     still = track.modes.incremental[line] and not any(words.values())
-    if not (still or not words) or not np.isfinite(home[named]).all():
+    if not (still or not words):
+        return
+    frames = track.state.frames
+    named = words or frames.homes.get("G28", {})
+    if not all(isfinite(home[k]) for k, axis in enumerate(track.axes) if axis in named):
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
     frame = Frame(frames.work, shift, (frames.first,) * len(track.axes))
@@ -152,17 +153,17 @@ def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, f
             return
 
 
-def _reached(track: Track, line: int, words: dict[str, float]) -> Floats:
+def _reached(track: Track, line: int, words: dict[str, float]) -> list[float]:
     """Return the position that the words of a line lead to."""
-    place = track.frame.words(track.state.position[None, :])[0].copy()
+    place = list(track.frame.words_of(track.state.position.tolist()))
+    steps = bool(track.modes.incremental[line])
     for axis, value in words.items():
         k = track.axes.index(axis)
-        steps = bool(track.modes.incremental[line])
         if steps and value and place[k] == LEFT:
             message = f"{axis} is incremental, but where {axis} stands is not known"
             track.findings.add(line, "GX207", message, axis, f"begin with an absolute {axis}")
         place[k] = place[k] + value if steps else value
-    return np.array(track.frame.positions(place[None, :])[0])
+    return track.frame.point(place)
 
 
 def _in_frame(track: Track, k: int, value: float) -> float:
@@ -171,7 +172,7 @@ def _in_frame(track: Track, k: int, value: float) -> float:
     nan where that frame counts from a zero that is not known.
     """
     if track.frame.origin[k] != track.state.frames.first:
-        return float("nan")
+        return nan
     return float(track.state.frames.machine[k]) + value
 
 
@@ -183,13 +184,13 @@ def _called(track: Track, line: int) -> Own | None:
     call = next(call for call in track.lines.kept_calls if call.line == line)
     if not call.ends.startswith(AT):
         return None
-    place = track.frame.words(track.state.position[None, :])[0].copy()
+    place = list(track.frame.words_of(track.state.position.tolist()))
     words = _target(track, line)
     for axis in call.ends.removeprefix(AT):
         if axis in words:
             place[track.axes.index(axis)] = words[axis]
-            track.note_lost(int(np.isnan(words[axis])) << track.axes.index(axis))
-    end = np.array(track.frame.positions(place[None, :])[0])
+            track.note_lost(int(isnan(words[axis])) << track.axes.index(axis))
+    end = track.frame.point(place)
     return _rows(track, line, Form.HOME, [(Kind.RAPID, end)] if words else [])
 
 
@@ -199,7 +200,7 @@ def _target(track: Track, line: int) -> dict[str, float]:
     first, window = int(track.lines.first[line]), track.lines.window
     text = window.line(line).decode("latin-1")
     block = track.lines.table.shapes.grammar.parse(text)
-    found = {word.address: np.nan for word in block.words if word.address in track.axes}
+    found = {word.address: nan for word in block.words if word.address in track.axes}
     sure = not (track.modes.incremental[line] or track.frame.polar or track.frame.diameter)
     for axis, slot in meaning.call_slots if sure and track.frame.matrix is None else ():
         value = float(window.value[first + slot])
@@ -224,10 +225,10 @@ def _in_machine(track: Track, line: int) -> Own:
     words = track.words_on(line)
     if not words:
         return _rows(track, line, Form.MACHINE, [])
-    end = track.state.position.copy()
+    end = track.state.position.tolist()
     for axis, value in words.items():
         k = track.axes.index(axis)
         value = value / 2 if axis == "X" and track.state.frames.diameter else value
         end[k] = _in_frame(track, k, value)
-        track.note_lost(int(np.isnan(end[k])) << k)
+        track.note_lost(int(isnan(end[k])) << k)
     return _rows(track, line, Form.MACHINE, [(kind, end)])

@@ -39,7 +39,7 @@ class Own(NamedTuple):
 
     line: int
     form: Form
-    moves: list[tuple[int, Floats]]
+    moves: Sequence[tuple[int, Floats | list[float]]]
     frame: int
 
 
