@@ -27,6 +27,8 @@ ANSWERS: dict[str, Any] = {
     "inert-m": [50],
     "for-end": "included",
     "subroutine-locals": "shared",
+    "motion-at-start": "G1",
+    "tool-change-by": "M6",
 }
 
 

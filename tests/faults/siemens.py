@@ -36,8 +36,88 @@ UNITS = "plugins/gcxform_plugins/dialects/siemens/units.py"
 LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
 LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
+ANGLES = "plugins/gcxform_plugins/dialects/siemens/angles.py"
+VARIABLES = "plugins/gcxform_plugins/dialects/siemens/variables.py"
+STANDING = "plugins/gcxform_plugins/dialects/siemens/standing.py"
 
 MUTATIONS = (
+    Mutation(
+        "siemens: AP=IC counts from zero",
+        POLAR,
+        "Decimal(self.polar[1]) + Decimal(by)",
+        "Decimal(by)",
+        f"{CASES}[dialects/siemens/polar]",
+    ),
+    Mutation(
+        "siemens: a line by its angle leads the other way",
+        ANGLES,
+        "way * along[k] <= 0",
+        "way == 0",
+        f"{CASES}[dialects/siemens/angle-that-leads-away]",
+    ),
+    Mutation(
+        "siemens: two lines by their angles meet behind them",
+        ANGLES,
+        "(a * other[1] - b * other[0]) / bend",
+        "(b * other[0] - a * other[1]) / bend",
+        f"{CASES}[dialects/siemens/angle-of-a-line]",
+    ),
+    Mutation(
+        "siemens: two coordinates and an angle are taken anywhere",
+        ANGLES,
+        "if self.met != self.line:",
+        "if False:",
+        "tests/test_siemens_told.py::test_what_is_told_twice_is_refused",
+    ),
+    Mutation(
+        "siemens: the axis across solid angles is not of length 1",
+        FRAMES,
+        "across[0] / size, across[1] / size, across[2] / size",
+        "across[0], across[1], across[2]",
+        f"{CASES}[dialects/siemens/solid-angles]",
+    ),
+    Mutation(
+        "siemens: what SET leaves out is 0",
+        VARIABLES,
+        "if each is not STAYS:",
+        "if True:",
+        f"{CASES}[dialects/siemens/arrays-filled]",
+    ),
+    Mutation(
+        "siemens: REP fills one element",
+        VARIABLES,
+        "for k in range(int(many)):",
+        "for k in range(1):",
+        f"{CASES}[dialects/siemens/arrays-filled]",
+    ),
+    Mutation(
+        "siemens: a variable of the control keeps what is set, whatever its type",
+        VARIABLES,
+        "[LOST] if cell is self.given.get(name) else given",
+        "given",
+        f"{CASES}[dialects/siemens/variable-that-is-given-and-set]",
+    ),
+    Mutation(
+        "siemens: behind a call variables of the control are what the user said",
+        VARIABLES,
+        "for each in self.given.values():",
+        "for each in ():",
+        "tests/test_siemens_told.py::test_a_call_may_set_what_is_given",
+    ),
+    Mutation(
+        "siemens: a spindle that turns is no rotary axis",
+        STANDING,
+        "return ROTARY\n        return None if name in MOVING",
+        'return ""\n        return None if name in MOVING',
+        "tests/test_siemens_told.py::test_a_spindle_may_be_a_rotary_axis",
+    ),
+    Mutation(
+        "siemens: behind a milling cycle X stands where it did",
+        STANDING,
+        '(MILLING, LINEAR + "F")',
+        '(MILLING, "YZF")',
+        f"{CASES}[dialects/siemens/stands-a-pocket]",
+    ),
     Mutation(
         "siemens texts: the last place of a character is the first",
         TEXTS,

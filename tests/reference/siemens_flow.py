@@ -355,7 +355,11 @@ class Machine:
         if poles:
             self.set_pole(int(poles[0]), {letter: value for letter, _, value in given})
             return
-        about = {letter: value for letter, _, value in given if letter in ("AP", "RP")}
+        about = {
+            letter: value + (self.polar["AP"] if way == "IC" else 0.0)
+            for letter, way, value in given
+            if letter in ("AP", "RP")
+        }
         if about:
             self.polar |= about
             place = self.turned(self.polar)

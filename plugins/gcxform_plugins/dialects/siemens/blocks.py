@@ -155,6 +155,8 @@ class Blocks(Contours):
         """Yield the blocks of T, M6 and D, in this order."""
         if line.tool:
             self.waiting = line.tool
+            if line.changes is None and self.reading.control.get("tool-change-by") == "T":
+                line.changes = line.edge or self.any_of(line) or gx.Item("word", ("T",), (), (0, 0))
         if line.changes is not None:
             if line.axes or self.following:
                 message = "M6 beside a move, or while TRAORI is in force"

@@ -1,6 +1,7 @@
 """Subprograms of a SINUMERIK: by their names, by L and a number, with parameters.
 
 They stand in files beside the program, `NAME.SPF` or `NAME.MPF`, or in folders that the user names.
+CALL, PCALL and EXTCALL name one by a text or a path, of which the last part counts here.
 What they set of modes stays set behind them; one that says SAVE is not followed, nor one that is
 not there.
 """
@@ -26,6 +27,14 @@ from gcxform_plugins.dialects.siemens.variables import WORDS, Call
 LEVELS = 8  # calls inside each other, on the smallest of these controls
 MOST = 9999  # times that one call may ask for
 CALLED = re.compile(r"([A-Z_][A-Z0-9_]*)", re.IGNORECASE)
+INDIRECT = re.compile(
+    r"(?:CALL[ \t]+|EXTCALL[ \t]*\([ \t]*)(?:\"(?P<text>[^\"]*)\"|(?P<variable>[A-Z_][A-Z0-9_]*))"
+    r"[ \t]*\)?|PCALL[ \t]+(?P<path>[A-Z0-9_/.]+)[ \t]*(?P<given>\(.*\))?",
+    re.IGNORECASE,
+)
+"""Calls by a text, a variable that has one, or a path (Job planning 07/2010; 840Di sl K1)."""
+KIND = re.compile(r"[._](?:SPF|MPF)$", re.IGNORECASE)
+BY_PATH = "programs that are called by a path are those of that name in the folders of subprograms"
 OUTSIDE = frozenset(("sequence", "label"))
 
 
@@ -37,9 +46,11 @@ class Calls(Computing):
         if self._returns(items):
             self._leave()
             return []
-        name = self._name_of(items)
+        name, text = self._name_of(items), ""
+        if not name:
+            name, text = self._indirect(items)
         if name and (lines := self.called_file(name)) is not None:
-            self._enter(name, lines)
+            self._enter(name, lines, text or self.lines[self.line])
             return []
         return super().executed(items)
 
@@ -56,6 +67,25 @@ class Calls(Computing):
         found = CALLED.match(item.name) if item.kind == "call" else None
         return "" if found is None or self.knows(found[1]) else found[1]
 
+    def _indirect(self, items: Sequence[gx.Item]) -> tuple[str, str]:
+        """Return the name that CALL, PCALL or EXTCALL says, and the call by it; or nothing."""
+        bare = [i for i in items if i.kind not in ("label", "main_number") and i.name != "N"]
+        if len(bare) != 1 or bare[0].kind not in ("flow", "call") or not self.finds_programs:
+            return "", ""
+        start, end = bare[0].place
+        found = INDIRECT.fullmatch(code(self.lines[self.line], True)[start:end].strip())
+        if found is None:
+            return "", ""
+        path = found["text"] or found["path"] or ""
+        if found["variable"]:
+            cell = self._cell(found["variable"])
+            value = cell.values[0] if cell is not None and not cell.size else LOST
+            path = value if isinstance(value, str) else ""
+        if "/" in path:
+            self.assumed[BY_PATH] = None
+        name = KIND.sub("", path.rpartition("/")[2]).upper().removeprefix("_N_")
+        return name, f"{name}{found['given'] or '()'}"
+
     @property
     def finds_programs(self) -> bool:
         """Whether there is a place where subprograms may be."""
@@ -63,7 +93,7 @@ class Calls(Computing):
 
     # --- in and out ---
 
-    def _enter(self, name: str, lines: range) -> None:
+    def _enter(self, name: str, lines: range, text: str) -> None:
         """Begin a subprogram. Raises InputError."""
         if len(self.calls) >= LEVELS or any(call.lines == lines for call in self.calls):
             self.refuse(f"{name} calls itself, or {LEVELS} calls are inside each other")
@@ -72,7 +102,7 @@ class Calls(Computing):
         self.look_for_tangents(self.lines[lines.start : lines.stop])
         proc = self._proc_of(name, lines)
         try:
-            times, given = self._given()
+            times, given = self._given(text)
             level = self._bound(proc, given)
         except v.NoValueError as why:
             raise self.refusal(why.code, why.message, None, why.hint) from None
@@ -99,10 +129,10 @@ class Calls(Computing):
             self.refuse(f"{name} says {words[0]} behind PROC")
         return node
 
-    def _given(self) -> tuple[int, list[Any]]:
+    def _given(self, text: str) -> tuple[int, list[Any]]:
         """Return how often a line calls, and its arguments: None for one that is left out."""
         try:
-            tree = self.tree_of(self.lines[self.line])
+            tree = self.tree_of(text)
         except UnexpectedInput:
             self.refuse("this call is not read")
         (node, *others) = [c for c in tree.children if rule_of(c) not in OUTSIDE]

@@ -16,7 +16,7 @@ import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.deciding import Deciding
 from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, span_of
-from gcxform_plugins.dialects.siemens.structure import StructureError
+from gcxform_plugins.dialects.siemens.structure import StructureError, code
 from gcxform_plugins.dialects.siemens.variables import AXES
 
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
@@ -121,15 +121,10 @@ class Computing(Deciding):
                 edits += self._assignment(node, set_names)
             elif rule not in AS_THEY_STAND:
                 edits.append((*span_of(node), ""))
-        text = text.partition(";")[0] if '"' not in text else _without_comment(text)
+        text = text.partition(";")[0] if '"' not in text else code(text, True)
         for start, end, new in sorted(edits, reverse=True):
             text = text[:start] + new + text[end:]
         return text
-
-
-def _without_comment(text: str) -> str:
-    found = re.match(r'(?:[^";]|"[^"]*")*', text)
-    return found[0] if found else text
 
 
 def _whole(item: gx.Item) -> int:

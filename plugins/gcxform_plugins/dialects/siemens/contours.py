@@ -17,8 +17,9 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.angles import Angles
 from gcxform_plugins.dialects.siemens.arcs import CENTRES, START, decimals
-from gcxform_plugins.dialects.siemens.framing import Framing, rounded
+from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, CORNERS, STEP, Line
 from gcxform_plugins.dialects.siemens.place import PlaceError, text_of
 
@@ -43,7 +44,7 @@ class Corner:
     code: str
 
 
-class Contours(Framing):
+class Contours(Angles):
     """Cuts corners, and finds the arcs that go on where an element ends.
 
     has_tangents  CT stands in lines that may be executed
@@ -85,6 +86,8 @@ class Contours(Framing):
             self.refuse("a corner at a line that leads to none", item, PLAINLY)
 
     def _moving(self, line: Line) -> str:
+        if "ANG" in line.named:
+            self.by_angle(line)
         corner = self._corner(line) if self._cuts(line) else None
         start = self._seen() if self.has_tangents else None
         if corner is None:

@@ -18,12 +18,14 @@ kept as it stands, with all that is lost behind it.
 | that, from an unknown angle | a rapid goes to the number as written; a cut is refused | |
 | plain words behind that | refused while whole turns lie between both numbers | |
 | steps behind G54, D, M6, SUPA | SD42440 or SD42442 adds the difference, or not: refused | [K] |
-| motion at start | MD20150: axis words before any motion code are refused | PM 1262 |
+| motion at start | MD20150: refused, but for `[control] motion-at-start` = G0 or G1 | PM 1262 |
 | `CR=` | positive for the arc up to half a turn, negative for the longer | OM 579 |
 | `AR=` | the opening angle, beside the end or the centre | PM 204 |
 | `TURN=n` | n full turns before the arc; of a full circle: refused | PM 205 |
 | G110, G111, G112 | the pole, from the last place, from zero, from the pole; else zero | F 118 |
 | `AP=`, `RP=` | angle, radius; the pole is the centre of arcs; in G91: refused | 808D 55 |
+| `AP=IC()` | on from the last angle about this pole; `RP=IC()`: refused | PM 175 |
+| `ANG=` | the angle of a line, beside one coordinate, or two lines up to where they meet | PM 220 |
 | `CIP` | an arc over a point; refused in G91, and outside of the plane in force | T 91 |
 | `CT` | the arc along the element before it, a line or an arc in the plane | PM 201 |
 | `RND=`, `RNDM=` | an arc that touches both lines at the corner to which the line leads | F 194 |
@@ -40,7 +42,8 @@ kept as it stands, with all that is lost behind it.
 | ROT X Y Z, RPL= | about Z, new Y, new X (RPY); about the axis across the plane | PM 309 |
 | behind them | nothing moves; steps are refused until their axis has been told (SD42440) | K2 1-7 |
 | arcs in frames that tilt, or do not grow axes alike | refused | |
-| ROTS, G58, G59, ROT of 90 or more about Y | refused | |
+| ROTS X Y | X stays in the plane of X and Z; the plane falls along X and Y | K2 775 |
+| other ROTS, G58, G59, ROT of 90 or more about Y | refused | |
 | G710, G700 | mm, inches, also of feeds | 828D 341 |
 | G71 | `units` in `[input]`, mm unless said, is the unit of feeds; G70: refused | 828D 341 |
 | another feed mode | F has to be programmed again | |
@@ -49,7 +52,7 @@ kept as it stands, with all that is lost behind it.
 | D1 in G18, G19 | along Y, X: refused without `[control] tool-length-axis = "Z"` (SD42940) | [K] |
 | Z between M6 and D | refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
 | those of X and Y | read, in G17: length 1 is along Z; steps behind D as well | W1 13 |
-| T without M6 | MD22550 decides whether it changes the tool: refused | W1 33 |
+| T without M6 | MD22550: refused, but for `[control] tool-change-by` = T or M6 | W1 33 |
 | `T="NAME"` | refused | |
 | G41, G42 | the radius of the tool of D1; settings decide how contours are met | W1 13 |
 | `TRAORI`, `TRAORI(1)`, `TRAFOOF` | X Y Z are those of the tip; the work offset stays | TR 172 |
@@ -74,6 +77,7 @@ kept as it stands, with all that is lost behind it.
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
 | R parameters | not known until they are set; a block sets several, left to right | [K] |
 | DEF of INT REAL BOOL CHAR STRING, arrays | 0 or empty, from 0, last index first | JP 54 |
+| `SET(1, , 3)`, `REP(2)`, `REP(2, 3)` | a gap stays; to the end, or three elements | [K] |
 | REAL to INT | as ROUND: halves up; negative halves are refused | JP 54 |
 | priorities | of PM 444: comparisons bind last, behind AND, XOR and OR | PM 444 |
 | `==`, `>` ... | to 1e-12 of the values; what differs by less has no order (MD10280) | JA 1-23 |
@@ -87,9 +91,11 @@ kept as it stands, with all that is lost behind it.
 | GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
 | CASE OF DEFAULT | by value; on without a DEFAULT | PM |
 | a variable set and read in a word of one block | refused | [K] |
-| GOTOS, REPEAT of a label, RET with a label, REP() | refused | [K] |
+| GOTOS, REPEAT of a label, RET with a label | refused | [K] |
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
 | other `$` variables, names that nothing defines | only the control knows them | |
+| R parameters and such names in `parameters` of `[input]` | what the user says, until set | |
+| `M=QU(8)` | M8, for which nothing waits | [K] |
 | these set, in a line that does nothing else | it stays; none of X Y Z A B C moves | [K] |
 | `$TC_...=`, `$P_UIFR[...]=` | data of tools lose X, Y, Z; zeros lose all axes | W1 13, K2 741 |
 | SETAL, SETMS, FGROUP, ACC[], FA[] | tell, or say how fast: they move nothing | PM |
@@ -97,6 +103,7 @@ kept as it stands, with all that is lost behind it.
 | `NAME(...)`, `L10 P2` | `NAME.SPF`, `.MPF` beside the program; VAR is the caller's own | PM |
 | `%_N_NAME_MPF` | begins a program; calls find the others of the file; two MPF: refused | PM 43 |
 | what is left out of a call | its default in PROC, or 0 | PM |
+| CALL "NAME", CALL of a variable, PCALL, EXTCALL | by the last part of the name | JP |
 | SAVE, MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
 | subprograms that are not there, synchronous actions, DEFINE | refused | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
@@ -117,6 +124,8 @@ To the same control, by passes that keep positions, a line stays that cannot be 
 | a line of words, with values that only the control knows | the axes that it names, and its F |
 | CT, ASPLINE, BSPLINE, CSPLINE, POLY, INVCW, INVCCW | those that words name until another motion |
 | RND, RNDM, CHF, CHR, TURN, AP, RP, ANG in a line | those that it names; by polar words X Y Z |
+| SPOS | A, B, C: the spindle may be one of them |
+| POCKET, SLOT, LONGHOLE, CYCLE60 to 64, 70 to 79, 802, 899 | X, Y, Z, and the feed |
 | TRANS, ROT ... ATRANS, AROT ..., G53, SUPA, G500, TRAORI, CYCLE800 | all axes |
 | DIAMON, DIAM90 | all axes, and all that follows stays: steps may be radii |
 | CYCLE81 to 89, 84, 840, HOLES1, HOLES2, CYCLE801 as they are not read | X, Y, Z |
@@ -169,6 +178,8 @@ class Siemens(gx.Dialect):
         lookup=gx.LookupRule(names=("{name}",), endings=(".SPF", ".MPF"), any_case=True)
     )
     settings = (
+        gx.Setting("motion-at-start", "siemens: motion before any code (MD20150)", ("G0", "G1")),
+        gx.Setting("tool-change-by", "siemens: what changes a tool (MD22550)", ("T", "M6")),
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )

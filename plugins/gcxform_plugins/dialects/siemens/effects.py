@@ -93,6 +93,8 @@ def _of_target(target: Tree[Token], known: Callable[[str], bool]) -> str | None:
         return LINEAR if OF_TOOLS.fullmatch(name) else "" if OF_THE_PLC.fullmatch(name) else None
     if name in ("S", "F"):
         return name.replace("S", "")
+    if name == "SPOS" and indexed:
+        return ROTARY
     if LETTER.fullmatch(name) or name in OTHERS or OSCILLATION.fullmatch(name):
         return None
     return "" if indexed or name in SPEEDS or len(name) > 1 else None

@@ -108,6 +108,28 @@ def about(axis: str, degrees: Decimal) -> Frame:
     return Frame(tuple(tuple(row) for row in rows))  # type: ignore[arg-type]
 
 
+def by_solid_angles(words: Mapping[str, Decimal]) -> Frame:
+    """Return the turn of ROTS X Y: how far its plane falls along X and Y. Raises PlaceError.
+
+    The new X is in the plane of the old X and Z, turned by Y about Y; the plane has the line that
+    is turned by X about X out of Y as well (Frames K2 p. 775).
+    """
+    if words.keys() != {"X", "Y"} or max(map(abs, words.values())) >= 90:
+        raise PlaceError("GX210", "ROTS but with X and Y, below 90 degrees", PLAIN)
+    first = about("Y", words["Y"]).turned((ONE, ZERO, ZERO))
+    along = about("X", words["X"]).turned((ZERO, ONE, ZERO))
+    across = _crossed(first, along)
+    size = sum((v * v for v in across), ZERO).sqrt()
+    third: Row = (across[0] / size, across[1] / size, across[2] / size)
+    x, y, z = zip(first, _crossed(third, first), third, strict=True)
+    return Frame((x, y, z))
+
+
+def _crossed(a: Row, b: Row) -> Row:
+    """Return the vector across two others."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
 def frame_of(name: str, words: Mapping[str, Decimal], angle: Decimal | None, plane: str) -> Frame:
     """Return the frame that an instruction makes, by its words and RPL. Raises PlaceError."""
     if angle is not None and (name != "ROT" or words):
@@ -121,6 +143,8 @@ def frame_of(name: str, words: Mapping[str, Decimal], angle: Decimal | None, pla
         if len(words) > 1 and abs(y) >= 90:
             raise PlaceError("GX210", "ROT with an angle of 90 or more about Y", PLAIN)
         return about("Z", z) @ about("Y", y) @ about("X", x)
+    if name == "ROTS":
+        return by_solid_angles(words)
     if name == "SCALE":
         factors = [words.get(axis, ONE) for axis in LINEAR]
         if any(factor <= 0 for factor in factors):

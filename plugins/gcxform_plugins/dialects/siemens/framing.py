@@ -37,7 +37,7 @@ class Framing(Polar):
         base = name.removeprefix("A")
         made = frame_of(base, words, angle, self.plane) if words or angle is not None else Frame()
         if name != base:
-            if base == "ROT" and not self.frame.rigid:
+            if base.startswith("ROT") and not self.frame.rigid:
                 self.refuse("AROT in a frame that grows axes by factors that differ", line.alone)
             made = self.frame @ made
         old = self.frame

@@ -31,7 +31,7 @@ WITHOUT = (
     *("begins", "rounding", "has_tangents", "kept_until"),
 )
 """What is not, where anything is learnt."""
-OTHERS = ("line", "frame", "levels", "calls", "place", "heads")
+OTHERS = ("line", "frame", "levels", "given", "calls", "place", "heads")
 PLAIN = Frame()
 modes_of, without = attrgetter(*MODES), attrgetter(*WITHOUT)
 

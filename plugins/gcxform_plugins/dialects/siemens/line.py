@@ -24,7 +24,7 @@ class Line:
     motion    of this line: "0" to "3", "CIP", or nothing
     axes      way (nothing, AC, IC, DC, ACP, ACN), number and item by letter; centres, middles: the
               same of I J K, and I1 J1 K1
-    named     CR, TURN, AR, AP, RP: number and item
+    named     CR, TURN, AR, AP, RP, ANG: number and item;  onwards: AP turns on from the last one
     corner    RND, RNDM, CHR, CHF, FRC: number and item;  behind: the blocks that cut a corner
     others    S and M words
     alone     what stands for nothing, and in a block of its own
@@ -38,6 +38,7 @@ class Line:
     centres: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
     middles: dict[str, tuple[str, str, gx.Item]] = field(default_factory=dict)
     named: dict[str, tuple[str, gx.Item]] = field(default_factory=dict)
+    onwards: bool = False
     corner: dict[str, tuple[str, gx.Item]] = field(default_factory=dict)
     behind: list[str] = field(default_factory=list)
     feed: str = ""

@@ -15,6 +15,14 @@ EDGE = (
     "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
 )
 ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
+START = (
+    "write G1 in this block, or G0 if the way is clear; or say "
+    'motion-at-start = "G1" in [control], or motion-at-start = "G0" in [control], as it is'
+)
+BY = (
+    'write M6 behind T; or say tool-change-by = "T" in [control], or tool-change-by = "M6" in '
+    "[control], as it is"
+)
 ARCS = ("2", "3", "CIP", "CT")
 LINEAR_WAY = (
     'write ORIAXES and ORIMKS; or say orientation-path = "angles" in [control], if it is so'
@@ -51,12 +59,7 @@ class Moves(Statements):
         self._check_tool(line)
         if not self.motion:
             message = "axis words, but no motion code is in force: a setting decides (MD20150)"
-            raise self.refusal(
-                "GX209",
-                message,
-                self.any_of(line),
-                "write G1 in this block, or G0 if the way is clear",
-            )
+            raise self.refusal("GX209", message, self.any_of(line), START)
         self.place.moved = True
         if self.following and self.motion != "0":
             self._check_turning(line)
@@ -107,9 +110,10 @@ class Moves(Statements):
         if self.changed and self.edge is None and self._counts_length(line):
             message = "behind M6 a setting of the control decides which edge is in force (MD20270)"
             self.refuse(message, item, EDGE)
-        if self.waiting is not None and not self.changed:
+        by = self.reading.control.get("tool-change-by")
+        if self.waiting is not None and not self.changed and by is None:
             message = "T without M6: a setting decides whether it changes the tool (MD22550)"
-            self.refuse(message, item, "write M6 behind T")
+            self.refuse(message, item, BY)
 
     def _counts_length(self, line: Line) -> bool:
         return "Z" in line.axes or not self.length_is_along_z

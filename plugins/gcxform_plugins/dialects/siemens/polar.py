@@ -45,6 +45,8 @@ class Polar(Moves):
             self.refuse(f"G{code} beside what is no word of it", item, "give it its own line")
         if any(way not in ("", ABSOLUTE) for way, _, _ in line.axes.values()):
             self.refuse(f"G{code} in steps", item, WAY)
+        if line.onwards:
+            self.refuse(f"G{code} beside AP=IC(...)", item, WAY)
         base = self._origin(code, item)
         if line.named:
             if len(line.named) < 2 or line.axes:
@@ -85,6 +87,8 @@ class Polar(Moves):
         item = next(line.named[name][1] for name in ("AP", "RP") if name in line.named)
         if line.axes.keys() & {*self.plane} or self.steps or line.named.keys() & {"CR", "AR"}:
             self.refuse("AP= or RP= beside words of the plane, of arcs, or in G91", item, WAY)
+        if line.onwards:
+            self._turn_on(line)
         self.polar = tuple(  # type: ignore[assignment]
             line.named.pop(name)[0] if name in line.named else before
             for name, before in zip(("RP", "AP"), self.polar, strict=True)
@@ -99,6 +103,13 @@ class Polar(Moves):
             self.refuse("AP= and RP= in a path that is no line and no arc", item, WAY)
         for axis, at, d in zip(self.plane, centre, by, strict=True):
             line.axes[axis] = ABSOLUTE, text_of(Decimal(repr(at + d)).quantize(FINEST)), item
+
+    def _turn_on(self, line: Line) -> None:
+        """Put the angle to which AP=IC() turns in its place. Raises InputError."""
+        by, item = line.named["AP"]
+        if not self.polar[1]:
+            self.refuse("AP=IC(...) turns on from an angle that is not known", item, WAY)
+        line.named["AP"] = text_of(Decimal(self.polar[1]) + Decimal(by)), item
 
     def _arc_about(self, line: Line, centre: Point, radius: float, item: gx.Item) -> None:
         """Put the centre of an arc about the pole into a line. Raises InputError and PlaceError."""

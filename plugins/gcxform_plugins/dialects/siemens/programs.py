@@ -368,7 +368,7 @@ class Programs(Learning):
             yield f"{KEPT} P{line.edge_number}"
         self.tool = self.edge = None
         self.changed |= line.changes is not None
-        self.lose_axes(LINEAR if line.changes is None else LINEAR + ROTARY)
+        self.lose_axes(ALL if line.tool or line.changes is not None else LINEAR)
 
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
         if self.reading.stays and not all(map(self.place.stands, self.plane)):

@@ -53,6 +53,8 @@ WHY = {
     "TRAORI": "TRAORI selects another transformation, or changes one",
 }
 AXES = LINEAR + ROTARY
+POLAR_WAYS = frozenset((("AP", ABSOLUTE), ("RP", ABSOLUTE), ("AP", STEP)))
+"""Ways of polar words that are read: AP=IC() turns on from the last AP (PM 175)."""
 OWN = frozenset((128, 129, 9000))
 """The M codes with which blocks say TRAORI, TRAFOOF and what is kept: elsewhere the machine's."""
 PLAIN = "write plain numbers, or let the CAM write them"
@@ -76,7 +78,9 @@ class Statements(gx.Translator):
     ) -> None:
         super().__init__(lines, file, dialect, reading)
         self.place = Place(self.reading.start)
-        self.motion, self.said, self.plane, self.work, self.unit = "", "", "XY", "", ""
+        at_start = str(self.reading.control.get("motion-at-start", ""))
+        self.motion, self.said, self.plane, self.work = at_start.removeprefix("G"), "", "XY", ""
+        self.unit = ""
         self.steps = self.said_steps = self.said_centres = False
         self.frame = Frame()
         self.following = self.comp = self.changed = False
@@ -287,8 +291,14 @@ class Statements(gx.Translator):
         self.refuse(f"{letter}{index}=: {message}", item)
 
     def _named(self, line: Line, item: gx.Item) -> None:
-        name = item.name
+        name, way = item.name, item.names[1] if len(item.names) > 1 else ""
+        if way and (name, way) not in POLAR_WAYS:
+            self.refuse(f"{name}={way}(...) is not read", item)
         if name in ("CR", "AR", "TURN", "RPL", "AP", "RP"):
+            self._once(line, item, name)
+            line.onwards |= way == STEP
+            line.named[name] = (item.numbers[0], item)
+        elif name == "ANG" and not self.reading.stays:
             self._once(line, item, name)
             line.named[name] = (item.numbers[0], item)
         elif name in CORNERS and not self.reading.stays:

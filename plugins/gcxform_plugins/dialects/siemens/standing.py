@@ -32,12 +32,16 @@ ENDS_OF_SPLINES = frozenset(("BAUTO", "BNAT", "BTAN", "EAUTO", "ENAT", "ETAN"))
 OTHER = "other"
 """A motion that is none of the blocks'."""
 POLAR = frozenset(("AP", "RP", "ANG"))
-MOVING = frozenset(("POS", "POSA", "POSP", "SPOS", "SPOSA", "LEAD", "TILT", "THETA"))
+MOVING = frozenset(("POS", "POSA", "POSP", "SPOSA", "LEAD", "TILT", "THETA"))
 
 
 SWIVELS = re.compile(r"(?:CYCLE800|TRAORI)[ \t]*\(", re.IGNORECASE)
 DRILLING = re.compile(r"(?:CYCLE(?:8[1-9]|840|801)|HOLES[12])[ \t]*\(", re.IGNORECASE)
 """Cycles that move along the axis of the tool, or on to holes; they return modes and frames."""
+MILLING = re.compile(
+    r"(?:CYCLE(?:6[0-4]|7[0126-9]|802|899)|POCKET[1-4]|SLOT[12]|LONGHOLE)[ \t]*\(", re.IGNORECASE
+)
+"""Those that mill, on paths that no manual tells: kept whole, and in feeds of their own."""
 
 
 def words_of(tree: Any, text: str) -> Iterator[gx.Item]:
@@ -77,6 +81,8 @@ def _of_item(item: gx.Item, quiet: frozenset[str], m_codes: frozenset[int]) -> s
     if kind in ("word", "value", "function") or (kind == "expression" and len(name) == 1):
         return _of_word(item, m_codes)
     if kind in ("named", "expression"):
+        if name == "SPOS":  # the spindle turns to an angle: it may be one of the rotary axes
+            return ROTARY
         return None if name in MOVING else LINEAR if name in POLAR else ""
     if kind == "indexed":
         return "" if name in "IJKMRS" else ALL
@@ -85,11 +91,13 @@ def _of_item(item: gx.Item, quiet: frozenset[str], m_codes: frozenset[int]) -> s
     if kind == "command":
         known = name in quiet or name in PATHS or name in ENDS_OF_SPLINES or name == "MCALL"
         return ALL if FRAMES.fullmatch(name) else "" if known else None
-    if kind == "call" and SWIVELS.match(name):
-        return ALL
-    if kind == "call" and DRILLING.match(name):
-        return LINEAR
-    return None
+    return _of_call(name) if kind == "call" else None
+
+
+def _of_call(name: str) -> str | None:
+    """Return the axes of a cycle that is known to move no others; None for other calls."""
+    kinds = (SWIVELS, ALL), (DRILLING, LINEAR), (MILLING, LINEAR + "F")
+    return next((axes for pattern, axes in kinds if pattern.match(name)), None)
 
 
 def _of_word(item: gx.Item, m_codes: frozenset[int]) -> str | None:

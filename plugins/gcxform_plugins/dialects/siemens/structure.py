@@ -45,8 +45,11 @@ class StructureError(Exception):
         self.line, self.message = line, message
 
 
-def code(text: str) -> str:
-    """Return a line without comment; what stands in texts is left out."""
+def code(text: str, with_texts: bool = False) -> str:
+    """Return a line without comment; what stands in texts is left out, or stays."""
+    if with_texts:
+        found = re.match(r'(?:[^";]|"[^"]*")*', text)
+        return found[0] if found else text
     return STRING.sub('""', text).partition(";")[0]
 
 

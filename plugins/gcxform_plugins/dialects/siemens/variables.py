@@ -21,8 +21,12 @@ from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.structure import Structure, names_set
 
 WORDS = re.compile(
-    r"[XYZABCIJKFSTDM]|[IJK]1|CR|RPL|AR|AP|RP|TURN|RNDM?|CH[RF]|FRC|ADIS|ADISPOS|CTOL|OTOL|ATOL"
+    r"[XYZABCIJKFSTDM]|[IJK]1|CR|RPL|AR|AP|RP|ANG|TURN|RNDM?|CH[RF]|FRC|ADIS|ADISPOS|CTOL|OTOL|ATOL"
 )
+STAYS: Value = float("nan")
+"""What stands in SET(1, , 3) where a value is left out: the element keeps its own."""
+QU = "QU"
+"""`M=QU(8)` is M8, for which what follows does not wait."""
 POSITIONS = frozenset(("$P_EP", "$AA_IW"))
 AXES = frozenset(LINEAR + ROTARY)
 NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
@@ -42,12 +46,19 @@ class Variables(Blocks):
 
     calls    those that are open;  main: the lines of the program that nothing has called
     r        R parameters;  levels: the variables of each call, by name in capitals
+    given    variables of the control of which the user says what they are worth: those of all calls
     stopped  STOPRE has been, and nothing has moved since
     """
 
     def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
-        self.r: dict[int, Value] = {}
+        values = self.reading.parameters.items()
+        self.r: dict[int, Value] = {int(n): float(x) for n, x in values if n.isdigit()}
+        self.given = {
+            name.strip("<>").upper(): Cell("REAL", (), [float(value)])
+            for name, value in values
+            if not name.isdigit()
+        }
         self.levels: list[dict[str, Cell]] = [{}]
         self.calls: list[Call] = []
         self.main = range(self.own)
@@ -87,7 +98,7 @@ class Variables(Blocks):
             self.refuse(
                 "a variable is set, and read in a word of the same block", None, "part them"
             )
-        way, number = self._worded(value)
+        way, number = self._worded(quickly(value) if name == "M" else value)
         text = f"{way}({number})" if way else number
         yield (*span_of(node), f" {name}={text} ")
 
@@ -113,7 +124,7 @@ class Variables(Blocks):
     def _set(self, name: str, index: Node | None, value: Any) -> None:
         """Set a variable; what only the control knows is lost with it."""
         try:
-            given = self._values(value)
+            given = [] if rule_of(value) == "repeated" else self._values(value)
         except v.NoValueError as why:
             if not why.lost:
                 raise
@@ -126,7 +137,31 @@ class Variables(Blocks):
             return
         cell = self._cell(name)
         assert cell is not None
-        self._fill(cell, index, given)
+        if rule_of(value) == "repeated":
+            self._fill_alike(cell, index, value)
+            return
+        # Of what type a variable of the control is nobody has said: what it makes of this is open.
+        self._fill(cell, index, [LOST] if cell is self.given.get(name) else given)
+
+    def _fill_alike(self, cell: Cell, index: Node | None, node: Node) -> None:
+        """Set elements of an array to one value: to its end, or as many as REP says."""
+        _, value, *count = node.children
+        if not cell.size:
+            raise v.NoValueError("REP(...) fills an array of the program")
+        at = cell.place(self.worth.indices(index)) if index is not None else 0
+        try:
+            rest = len(cell.values) - at
+            many = self.worth.number(count[0]) if count else float(rest)
+            worth = self.worth.of(value)
+        except v.NoValueError as why:
+            if not why.lost:
+                raise
+            cell.lose()
+            return
+        if many != int(many) or not 0 < many <= rest:
+            raise v.NoValueError("REP(...) fills more elements than there are")
+        for k in range(int(many)):
+            cell.put(at + k, worth)
 
     def _fill(self, cell: Cell, index: Node | None, given: Sequence[Value]) -> None:
         """Set elements of an array from one on, or a single value."""
@@ -141,26 +176,26 @@ class Variables(Blocks):
         if at + len(given) > len(cell.values):
             raise v.NoValueError("more values than elements")
         for k, each in enumerate(given):
-            cell.put(at + k, each)
+            if each is not STAYS:
+                cell.put(at + k, each)
 
     def _values(self, node: Any) -> list[Value]:
         """Return the values of an assignment: several for SET and lists."""
         rule = rule_of(node) if isinstance(node, Tree) else ""
-        if rule in ("repeated", "axis_value"):
-            self.refuse("REP(...) and ways of axes are not read in an assignment")
+        if rule == "axis_value":
+            self.refuse("ways of axes are not read in an assignment")
         if rule == "list":
             return [self.worth.of(each) for each in node.children]
         if rule == "set_of":
             slots = node.children[1:]
-            if not all(each.children for each in slots):
-                self.refuse("SET(...) with values left out is not read")
-            return [self.worth.of(each.children[0]) for each in slots]
+            return [self.worth.of(s.children[0]) if s.children else STAYS for s in slots]
         return [self.worth.of(node)]
 
     # --- variables ---
 
     def _cell(self, name: str) -> Cell | None:
-        return self.levels[-1].get(name.upper())
+        upper = name.upper()
+        return self.levels[-1].get(upper) or self.given.get(upper)
 
     def _system(self, name: str, index: Sequence[Any]) -> Value:
         """Return what the control says of where an axis stands, if that is known."""
@@ -183,6 +218,8 @@ class Variables(Blocks):
     def lose_called(self, text: str) -> None:
         """Forget what a call may have set: R parameters, and the variables that its line names."""
         self.r.clear()
+        for each in self.given.values():
+            each.lose()
         for name in NAME.findall(text):
             if (cell := self._cell(name)) is not None:
                 cell.lose()
@@ -212,6 +249,9 @@ class Variables(Blocks):
         cell.most = most
         if value is None:
             return
+        if isinstance(value, Tree) and rule_of(value) == "repeated":
+            self._fill_alike(cell, None, value)
+            return
         try:
             self._fill(cell, None, self._values(value))
         except v.NoValueError as why:
@@ -228,3 +268,10 @@ class Variables(Blocks):
             cell.lose()
             if any(isinstance(c, Tree) and rule_of(c) == "bounds" for c in each.children):
                 del self.levels[-1][name]
+
+
+def quickly(value: Any) -> Any:
+    """Return the number in QU() of an M code, and what else stands there as it is."""
+    quick = rule_of(value) == "function" and str(value.children[0]).upper() == QU
+    slots: list[Any] = value.children[1].children if quick else []
+    return slots[0].children[0] if len(slots) == 1 and slots[0].children else value
