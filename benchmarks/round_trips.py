@@ -44,9 +44,13 @@ COMMENT = re.compile(rb"\([^)]*\)|;.*")
 ENDS = {"M2", "M30", "G80", "G98", "G99", "G43", "G49", "G54", "G28", "BY", "G53"}
 """What a language need not say: the end of a file, cycles that are moves, lengths with tools; and
 returns, which are moves to the same places in other words."""
-CONTROL = {"siemens": {"tool-length-axis": "Z"}, "fanuc": {"tool-length-alone": "shifts"}}
+CONTROL = {
+    "siemens": {"tool-length-axis": "Z"},
+    "fagor": {"tool-length-axis": "Z", "inch-feeds": "inches"},
+    "fanuc": {"tool-length-alone": "shifts"},
+}
 """What a user knows of each control: on a mill lengths stay along Z (SD42940), and none of them
-moves an axis by itself."""
+moves an axis by itself; F is in the unit of the program."""
 LONGEST = 200_000  # bytes
 SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|said as|a comment)")
 OUTPUT = ("drop", "inert")

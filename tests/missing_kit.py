@@ -25,6 +25,7 @@ ANSWERS: dict[str, Any] = {
     "null-compare": "zero",
     "ends": "unknown",
     "inert-m": [50],
+    "inch-feeds": "inches",
     "for-end": "included",
     "subroutine-locals": "shared",
     "motion-at-start": "G1",

@@ -400,3 +400,9 @@ def test_where_axes_are_turned_the_word_of_the_control_is_named(tmp_path):
     assert error.value.diagnostics[0].where.text == "N9 #RTCP OFF"
     step = pipeline(tmp_path, "fagor", passes=RTCP + 'rapids = "ends"\n')
     assert step.run(late.replace(b"G0 Z99", b"G0 X1 Y2 Z99")).certificate.verified
+
+
+def test_a_tool_change_takes_d0_away():
+    text = b"G71 G90 G17 G94 G54\nT3 M6\nD0\nT4 M6\n#MCS ON\nG0 Z9\n#MCS OFF\n"
+    with pytest.raises(gx.InputError, match="whether a tool length is in them"):
+        _ = gx.read(text, FAGOR).path

@@ -59,7 +59,6 @@ def test_a_program_has_a_name_that_is_no_subroutine():
 
 REFUSED = [
     ("T3 M6\nG43 H4\nG0 X1. Y1. Z1.", "the length of another tool than the one in the spindle"),
-    ("G53 G0 Z0.", "G53"),
     ("G92 X5.", "G92"),
     ("G93 G1 X5. F2.", "G93"),
     ("G0 X1.\nM7\nM100", "M100"),
@@ -70,6 +69,21 @@ REFUSED = [
 def test_what_has_no_words_is_refused(blocks, why):
     with pytest.raises(gx.GcxformError, match=why):
         said(blocks)
+
+
+def test_places_of_the_machine_are_said():
+    lines = said("T3 M6\nG43 H3\nG0 X1. Y1. Z1.\nG53 G0 Z0.\nG53 X0. Y0.\nG0 X5. Y5. Z5.")
+    machine = ["D0", "#MCS ON", "G0 Z0", "#MCS OFF", "#MCS ON", "X0 Y0", "#MCS OFF", "D1"]
+    assert lines[lines.index("D0") :] == [*machine, "G0 X5 Y5 Z5"]
+
+
+def test_how_far_corners_are_rounded_is_not_said():
+    assert "G5" in said("G64 P0.1 Q0.1\nG0 X1. Y1. Z1.")
+
+
+def test_compensation_is_said_without_its_tool():
+    lines = said("T3 M6\nG43 H3\nG0 X0. Y0. Z0.\nG1 G41 D3 X9. F100.\nY9.\nG1 G40 X20.")
+    assert "G1 G41 X9 F100" in lines
 
 
 WRONG = [

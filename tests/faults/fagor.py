@@ -29,6 +29,55 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "fagor: G53 says nothing to the same control",
+        PROGRAMS,
+        'code == "G53" or code in tables.COMP',
+        "code in tables.COMP",
+        f"{CASE}kept-coordinates]",
+    ),
+    Mutation(
+        "fagor: the end of other coordinates says nothing to the same control",
+        PROGRAMS,
+        "self.reading.stays and head in tables.OFF",
+        'self.reading.stays and head == "#TOOL"',
+        f"{CASE}kept-coordinates]",
+    ),
+    Mutation(
+        "fagor: places of the machine have the tool length in them",
+        BLOCKS,
+        "if on and (not self.bare or",
+        "if on and (",
+        f"{CASE}refused-mcs-on]",
+    ),
+    Mutation(
+        "fagor: behind a tool change D0 is in force",
+        BLOCKS,
+        "            self.bare = False\n",
+        "            self.bare = True\n",
+        "tests/test_fagor.py::test_a_tool_change_takes_d0_away",
+    ),
+    Mutation(
+        "fagor: places of the machine are those of the program",
+        BLOCKS,
+        'return f"G53 {said}" if',
+        "return said if",
+        f"{CASE}machine-coordinates]",
+    ),
+    Mutation(
+        "fagor: compensation takes the radius of no tool",
+        BLOCKS,
+        "if not self.long or self.following or any(",
+        "if self.following or any(",
+        f"{CASE}cutter-comp-of-no-tool]",
+    ),
+    Mutation(
+        "fagor: behind a place of the machine no length is in force",
+        LINES,
+        'self.bare, self.waits = True, self.length != "0"',
+        "self.bare, self.waits = True, False",
+        f"{SAID}::test_places_of_the_machine_are_said",
+    ),
+    Mutation(
         "fagor: Q420 is no Q60",
         POLAR,
         "if abs(angle) > TURN else angle",
@@ -262,7 +311,7 @@ MUTATIONS = (
     Mutation(
         "fagor: plain blocks are not looked at while nothing may move",
         BLOCKS,
-        "        self.plainly = not self.bars\n",
+        "        self.plainly = not self.bars and not self.machine\n",
         "",
         f"{CASE}g53]",
     ),

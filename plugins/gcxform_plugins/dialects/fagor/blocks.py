@@ -17,13 +17,16 @@ EDGE_EARLY = "whether a D acts before the tool that it is for is changed is not 
 ACROSS = "in G18 and G19 the length of the tool may be across the plane, and not along Z"
 ALONG = 'write G17 before; or say tool-length-axis = "Z" in [control], if it stays there'
 NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only the control knows"
+IN_MACHINE = frozenset(("", "G0", "G1", "G90", "M3", "M4", "M5", "M7", "M8", "M9"))
+"""Codes that are read in lines to places of the machine."""
 WHOLE = re.compile(r"[0-9]+\Z")
 
 
 class Blocks(gx.Translator):
     """Turns blocks of a Fagor into blocks of words.
 
-    `bars` are the reasons for which nothing may move at present, and what lifts them.
+    `bars` are the reasons for which nothing may move at present, and what lifts them. `bare`: D0 is
+    in force; `machine`: coordinates are those of the machine; `comp`: G41 or G42 is in force.
     """
 
     grammar = ("gcxform_grammars", "fagor")
@@ -42,6 +45,7 @@ class Blocks(gx.Translator):
         self.corners = self.kinematics = ""
         self.tool = self.edge = self.in_spindle = ""
         self.changing = self.across = self.long = False
+        self.bare = self.machine = self.comp = False
 
     def plain(self, items: Sequence[gx.Item]) -> bool:
         """Whether a block has plain codes and words only, its number before them."""
@@ -64,7 +68,7 @@ class Blocks(gx.Translator):
             blocks = [*self._statement(items)]
         else:
             blocks = [*self._block(items)]
-        self.plainly = not self.bars
+        self.plainly = not self.bars and not self.machine
         self.places.note(items)
         return [f"{number}{blocks[0]}", *blocks[1:]] if blocks else []
 
@@ -104,10 +108,14 @@ class Blocks(gx.Translator):
         for item in items:
             self._check(item)
         codes = {code_of(item): item for item in items if item.kind == "code"}
+        if self.machine:
+            yield self._in_machine(items)
+            return
         if "G4" in codes:
             yield self._dwell(items)
             return
         self._note(codes, items)
+        self._compensates(codes, items)
         moved = [item for item in items if item.name in tables.AXES | {*"IJKR"}]
         change = [item for item in items if item.name in ("T", "D") or code_of(item) == "M6"]
         length = self._changed(change, moved) if change else ""
@@ -137,6 +145,8 @@ class Blocks(gx.Translator):
             self.refuse(f"{shown.strip()} is not resolved: {tables.KINDS[item.kind]}", item, hint)
         if item.kind in ("header", "label", "colon") or item.name == "N":
             raise self.refusal("GX101", "this stands only at the head of a block", item)
+        if code == "G70" and self.reading.control.get("inch-feeds") is None:
+            self.refuse(f"G70 is not resolved: {tables.INCHES}", item, tables.SAY_INCHES)
         if code in tables.REFUSED:
             self.refuse(f"{code} is not resolved: {tables.REFUSED[code]}", item)
         if code and code not in tables.CODES | tables.M_CODES:
@@ -162,6 +172,27 @@ class Blocks(gx.Translator):
         if "G53" in codes:
             self.bars["offset"] = NO_OFFSET, "write G54 to G59 before the move"
 
+    def _compensates(self, codes: Mapping[str, gx.Item], items: Sequence[gx.Item]) -> None:
+        """Take G41 and G42, with the radius of the tool whose D1 is in force."""
+        item = next((codes[code] for code in tables.COMP & codes.keys()), None)
+        self.comp = (self.comp or item is not None) and "G40" not in codes
+        if item is None:
+            return
+        if not self.long or self.following or any(other.name in ("T", "D") for other in items):
+            what = "compensation needs D1 of the tool in the spindle, said before, and no #RTCP"
+            self.refuse(what, item, "write T, M6 and D1 before")
+
+    def _in_machine(self, items: Sequence[gx.Item]) -> str:
+        """Return the block of a move in the coordinates of the machine."""
+        for item in items:
+            code = code_of(item)
+            if code not in IN_MACHINE or item.kind not in ("code", "word"):
+                self.refuse("between #MCS ON and #MCS OFF lines to axis words are read", item)
+            if item.name in {*"IJKRSTD"} and not code:
+                self.refuse("between #MCS ON and #MCS OFF lines to axis words are read", item)
+        said = " ".join(word for item in items for word in self._said(item))
+        return f"G53 {said}" if any(item.name in tables.AXES for item in items) else said
+
     def _move(self, item: gx.Item) -> None:
         """Refuse a move while there is a reason for that."""
         for message, hint in self.bars.values():
@@ -176,6 +207,8 @@ class Blocks(gx.Translator):
             return [item.name + item.numbers[0]] if item.name != "D" else []
         if code in tables.UNSAID or code == "G6":
             return []
+        if code in tables.COMP:
+            return [code, f"D{self.in_spindle}"]
         return [tables.OTHER.get(code, code)]
 
     def _relative(self, items: Sequence[gx.Item], words: list[str]) -> tuple[list[str], list[str]]:
@@ -226,6 +259,7 @@ class Blocks(gx.Translator):
                 self.refuse(f"D{self.edge} is not resolved: {what}", words["D"])
         if "M6" in words:
             self.in_spindle, self.tool, self.changing = self.tool, "", False
+            self.bare = False
             edge, self.edge = self.edge, ""
             if not edge:
                 self.bars["length"] = NO_EDGE, "write D1 behind the tool change"
@@ -240,6 +274,7 @@ class Blocks(gx.Translator):
         """Take notice of planes in which the length of the tool may not be along Z."""
         self.across = bool({"G18", "G19"} & {*codes}) if PLANES & {*codes} else self.across
         self.long = length.startswith("G43") if length else self.long
+        self.bare = length == "G49" if length else self.bare
         if self.across and self.long and self.reading.control.get("tool-length-axis") != "Z":
             self.bars["plane"] = ACROSS, ALONG
         else:
@@ -273,6 +308,9 @@ class Blocks(gx.Translator):
             self.refuse(f"{name} is not resolved: it is read in a block of its own", item, ALONE)
         if head == "#RTCP" and rest in (["ON"], ["OFF"]) and not inside:
             return [self._tips(item, rest == ["ON"])]
+        if head == "#MCS" and rest in (["ON"], ["OFF"]) and not inside:
+            self._machine(item, rest == ["ON"])
+            return []
         if head == "#KIN" and rest == ["ID"]:
             self._kinematics(item, inside)
             return []
@@ -281,6 +319,14 @@ class Blocks(gx.Translator):
         what = tables.STATEMENTS.get(head, "it is not known here")
         what = "this form of it is not known here" if head in ("#RTCP", "#KIN") else what
         self.refuse(f"{name} is not resolved: {what}", item)
+
+    def _machine(self, item: gx.Item, on: bool) -> None:
+        """Take coordinates of the machine, or those of the program again. Raises InputError."""
+        if on and (not self.bare or self.incremental or self.following or self.comp):
+            what = f"#MCS is not resolved: {tables.STATEMENTS['#MCS']}"
+            self.refuse(what, item, "write D0 and G90 before")
+        self.machine = on
+        self.places.lose()
 
     def _tips(self, item: gx.Item, on: bool) -> str:
         """Return the code that follows the tip, or leaves it."""

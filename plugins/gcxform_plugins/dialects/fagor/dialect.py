@@ -49,12 +49,12 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |
 | G17, G18, G19 | planes; G20 gives the plane other axes: refused |
 | D1 in G18, G19 | length across the plane: refused without `[control] tool-length-axis = "Z"` |
-| G40 | reads; G41 and G42 take a radius, and a rule for corners, of the control: refused |
+| G41, G42 | the radius of the tool of D1; how corners are gone round is the control's |
 | G53 | cancels the work offset up to the next G54 to G59 [post]: a move there is refused |
-| `#MCS` | moves to places of the machine: refused |
+| `#MCS ON`, `#MCS OFF` | lines to places of the machine, behind D0 and in G90; else refused |
 | G54 to G59, `G159=1` to 6 | the same offsets: G159=1 is ORGT[1] [8070], and so is G54 [stone] |
 | G71 | millimetres |
-| G70 | inches: refused, as no source was found for the unit of feeds |
+| G70 | inches, refused but for `[control] inch-feeds` = inches: no source says what F is |
 | G80, G98, G99 | say nothing, as all cycles are refused |
 | G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
 | G10 to G14, G72 | mirror and scale: refused |
@@ -104,9 +104,11 @@ class Fagor(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         "G97": v.inert("spindle-mode", "S", act="rpm"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
-        "G61": v.inert("path", "PQ", "PQ", act="exact-path"),
-        "G64": v.inert("path", "PQ", "PQ", act="blend"),
+        "G61": v.inert("path", act="exact-path"),
+        "G64": v.inert("path", act="blend"),
         "G43": v.frame("tool-length", "length", "H"),
+        "G53": v.frame("non-modal", "machine"),
+        **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G68": v.frame("rotation", "rotate", v.AXES + "R"),
         "G69": v.frame("rotation", "no-rotate"),
     }
@@ -125,6 +127,7 @@ class Fagor(gx.Dialect):
     )
     settings = (
         gx.Setting("for-end", "fagor: $FOR runs for its last value", ("included", "excluded")),
+        gx.Setting("inch-feeds", "fagor: what F is behind G70", ("inches",)),
         gx.Setting("subroutine-locals", "fagor: P0 to P99 in LL, L, #CALL", ("shared", "own")),
     )
     program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)

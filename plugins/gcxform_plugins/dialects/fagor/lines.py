@@ -14,13 +14,16 @@ import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables
 
 CODES = {
+    "G20": "G70",
     "G21": "G71",
     "G61": "G7",
     "G64": "G5",
     **dict.fromkeys(("G80", "G91.1", "G98", "G99", "G43", "G49", "G4"), ""),
 }
 """Codes by another name, or by none: where nothing else is read, nothing has to be said."""
-SAME = tables.PLAIN | tables.WORK | {"G90", "G91"}
+SAME = tables.PLAIN | tables.WORK | tables.COMP | {"G90", "G91"}
+CORNERS = frozenset(("G61", "G64"))
+"""How corners are taken, without how far (P, Q): the control has it elsewhere."""
 LONGEST = 14  # characters of the name of a program [Q 45]
 ENDS = ("M2", "M30")
 
@@ -30,7 +33,8 @@ class Lines(gx.Speller):
 
     tool    that of the last T, and `in_spindle`
     length  that of which tool is in force, "0" for none
-    waits   M6 has been, and D has not yet: it is said before the next move
+    waits   M6 or a place of the machine has been, and D has not yet: it is said before a move
+    bare    D0 was said last
     over    the program has ended
     """
 
@@ -41,7 +45,7 @@ class Lines(gx.Speller):
         bare = f"P{bare}" if bare.startswith("L") else bare
         super().__init__(bare[:LONGEST], inch)
         self.tool = self.in_spindle = self.length = "0"
-        self.waits = self.over = False
+        self.waits = self.over = self.bare = False
 
     def opening(self) -> list[str]:
         """Return the first line."""
@@ -61,6 +65,9 @@ class Lines(gx.Speller):
         if self.over and any(name[0] != "N" for name in names):
             raise gx.UnspeakableError("something stands behind the end of the program")
         values = dict(words)
+        if "G53" in names:
+            yield from self._in_machine(words)
+            return
         yield from self._tooled(names, values)
         if "G68" in names or "G69" in names:
             raise gx.UnspeakableError("a turn is not written")
@@ -76,7 +83,7 @@ class Lines(gx.Speller):
         if "T" in values:
             self.tool = _plain(values["T"])
         if "M6" in names:
-            self.in_spindle, self.waits = self.tool, True
+            self.in_spindle, self.waits, self.bare = self.tool, True, False
             yield f"T{self.tool} M6"
         before = self.length
         if "G43" in names:
@@ -87,27 +94,40 @@ class Lines(gx.Speller):
         if moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
             if self.length not in ("0", self.in_spindle):
                 raise gx.UnspeakableError("the length of another tool than the one in the spindle")
-            self.waits = False
-            yield "D0" if self.length == "0" else "D1"
+            self.waits, self.bare = False, self.length == "0"
+            yield "D0" if self.bare else "D1"
+
+    def _in_machine(self, words: list[tuple[str, str]]) -> Iterator[str]:
+        """Yield the lines of a move to a place of the machine; the length in force waits."""
+        if not self.bare:
+            yield "D0"
+        self.bare, self.waits = True, self.length != "0"
+        yield "#MCS ON"
+        yield " ".join(self._words([each for each in words if each != ("G", "53")], False))
+        yield "#MCS OFF"
 
     def _words(self, words: list[tuple[str, str]], waits: bool) -> Iterator[str]:
         """Yield the words of a line but those of tools. Raises UnspeakableError."""
+        corners = any(letter + _plain(text) in CORNERS for letter, text in words)
         for letter, text in words:
             name = letter + _plain(text)
-            if letter == "G":
-                if name not in SAME and name not in CODES:
-                    raise gx.UnspeakableError(f"{name} has no words on a Fagor")
-                if said := CODES.get(name, name):
-                    yield said
-            elif letter == "M":
-                if name not in tables.M_CODES:
-                    raise gx.UnspeakableError(f"{name} is a function of the machine")
-                if name != "M6":
-                    yield name
+            if letter == "D" and _plain(text) != self.length:
+                raise gx.UnspeakableError("the radius of another tool than that of the length")
+            if letter in "GM":
+                yield from self._code(name)
             elif letter in tables.PLAIN_WORDS or letter == "N":
                 yield letter + (_plain(text) if letter != "N" else text)
-            elif letter not in "THO" and not (letter == "P" and waits):
+            elif letter not in "DTHO" and not (letter in "PQ" and (waits or corners)):
                 raise gx.UnspeakableError(f"{letter} has no words on a Fagor")
+
+    def _code(self, name: str) -> Iterator[str]:
+        """Yield the word for a code, if it has one. Raises UnspeakableError."""
+        if name[0] == "M" and name not in tables.M_CODES:
+            raise gx.UnspeakableError(f"{name} is a function of the machine")
+        if name[0] == "G" and name not in SAME and name not in CODES:
+            raise gx.UnspeakableError(f"{name} has no words on a Fagor")
+        if name != "M6" and (said := CODES.get(name, name)):
+            yield said
 
 
 def _plain(text: str) -> str:

@@ -45,7 +45,20 @@ LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|
 STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
 STATE = (
     *("bars", "incremental", "following", "taken_away", "corners", "kinematics", "tool", "edge"),
-    *("in_spindle", "changing", "across", "long", "known", "doubtful", "at", "calls", "counting"),
+    *(
+        "in_spindle",
+        "changing",
+        "across",
+        "long",
+        "bare",
+        "machine",
+        "comp",
+        "known",
+        "doubtful",
+        "at",
+        "calls",
+        "counting",
+    ),
     *("gone", "pole", "polar", "plane", "turned", "untold"),
 )
 
@@ -239,6 +252,21 @@ class Programs(Flow):
         if self.reading.stays and any(code_of(item) == "G73" for item in items):
             self.refuse("G73: what the words are of changes with it")
         return super().preset(items)
+
+    def _check(self, item: gx.Item) -> None:
+        """Refuse an item that is not read; for the same control what changes where words count."""
+        super()._check(item)
+        code = code_of(item)
+        if self.reading.stays and (code == "G53" or code in tables.COMP):
+            self.refuse(f"{code}: where the words behind it count from is not known", item)
+
+    def _statement(self, items: Sequence[gx.Item]) -> list[str]:
+        """Return the blocks of a statement; for the same control coordinates that end stay."""
+        item = next(item for item in items if item.kind == "statement")
+        head = item.name.split()[0]
+        if self.reading.stays and head in tables.OFF:
+            self.refuse(f"{head}: what the words are of changes with it", item)
+        return super()._statement(items)
 
     def _tips(self, item: gx.Item, on: bool) -> str:
         """Return the code that follows the tip; for the same control the statement stays."""

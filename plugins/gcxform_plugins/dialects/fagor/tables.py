@@ -16,9 +16,11 @@ UNSAID = frozenset({"G80", "G98", "G99", "G53"})
 WORK = frozenset({"G54", "G55", "G56", "G57", "G58", "G59"})
 CORNERS = {"G5": "G64", "G7": "G61", "G50": "G64", "G61": "G64"}
 """How corners are taken: exactly, or rounded."""
-OTHER = {**CORNERS, "G60": "G61", "G71": "G21"}
+OTHER = {**CORNERS, "G60": "G61", "G70": "G20", "G71": "G21"}
 """Codes that have another name in the tables of the dialect."""
-CODES = PLAIN | UNSAID | WORK | {*OTHER, "G4", "G6", "G90", "G91", "G159"}
+COMP = frozenset(("G41", "G42"))
+"""Codes that move the path beside the contour, by the radius of the tool whose D1 is in force."""
+CODES = PLAIN | UNSAID | WORK | COMP | {*OTHER, "G4", "G6", "G90", "G91", "G159"}
 M_CODES = frozenset(f"M{code}" for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30))
 WORDS = PLAIN_WORDS | {"T", "D"}
 LACKING = {
@@ -35,7 +37,8 @@ PATTERN = "it repeats a cycle over a pattern of points"
 MIRROR = "it mirrors the coordinates"
 BLEND = "it puts moves of its own into the contour"
 POLAR = "it sets the origin of polar coordinates"
-COMP = "it moves the path beside the contour, by a radius and a rule for corners of the control"
+INCHES = "lengths are inches behind it; whether feeds are too is not certain"
+SAY_INCHES = 'say inch-feeds = "inches" in [control], if it is so; or write G71'
 OLD_LENGTH = "tool lengths of an 8065 go with D; on an 8055 it takes a length into account"
 
 REFUSED: Mapping[str, str] = {
@@ -47,13 +50,10 @@ REFUSED: Mapping[str, str] = {
     "G31": POLAR,
     "G33": v.SYNCHRONISED,
     **{f"G{code}": BLEND for code in (36, 37, 38, 39)},
-    "G41": COMP,
-    "G42": COMP,
     **{f"G{code}": OLD_LENGTH for code in (43, 44, 49)},
     "G45": "it turns an axis along the path",
     **{f"G{code}": PATTERN for code in (62, 64, 65, 160, 161, 162, 163, 164, 165)},
     "G63": v.SYNCHRONISED,
-    "G70": "lengths are inches behind it; whether feeds are too is not certain",
     "G72": "it scales the coordinates",
     "G74": v.HOME,
     **{f"G{code}": v.PROBE for code in (75, 76, 100, 101, 102, 103, 104)},
@@ -72,8 +72,8 @@ REFUSED: Mapping[str, str] = {
 STATEMENTS: Mapping[str, str] = {
     "#CS": "it turns and shifts the coordinates; X, Y and Z are those of an inclined plane",
     "#ACS": "it turns the coordinates back by how the part is clamped",
-    "#MCS": "coordinates are those of the machine; whether the tool length is in them is not "
-    "certain",
+    "#MCS": "coordinates are those of the machine; whether a tool length is in them is not "
+    "certain, so it is read as #MCS ON and #MCS OFF, behind D0 and in G90",
     "#TLC": "it corrects for a tool that is longer than the program was made for, along the tool",
     "#TOOL": "it puts the tool upright on the plane in force; where the axes go is the control's "
     "choice",
