@@ -5,10 +5,10 @@ state that the source leaves, so modes that the passes have changed are stated a
 return. Where what is written would depend on what is not known the file is kept, byte for byte, if
 no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
 
-A pass that does turn them keeps what moves nothing, and what it would not change wherever that is
-called. Errors are those of a place: all else is for the run of the program that calls it, or
-`[entry]` says where the axes stand and in which modes.
-Then it begins and ends at commands that its caller gives and expects (`at_call.py`).
+A pass that does turn them keeps what moves nothing, or nothing but in what it calls that is not at
+hand. Errors are those of a place: all else is for the run of the program that calls it, or
+`[entry]` says where the axes stand and in which modes. Then it begins and ends at commands that its
+caller gives and expects (`at_call.py`).
 """
 
 from __future__ import annotations
@@ -109,10 +109,11 @@ def _refusal(hint: str) -> InputError:
 
 
 def _the_same(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
-    """Run a file of which nobody says how it is called. Raises InputError if it would change.
+    """Run a file of which nobody says how it is called. Raises InputError if it moves or changes.
 
-    If no byte does, nothing that is written depends on it, and nothing has been done that a stamp
-    would say. A file of O-words executes nothing.
+    What moves in what it calls is not at hand, and nothing has been done that a stamp would say. Of
+    a file that moves it is not enough that no byte would change: behind a G52 of its caller it goes
+    elsewhere. A file of O-words executes nothing.
     """
     if plan.source.flow_rule.language == "o-words":
         raise _refusal(HINT_OF_PLACES)
@@ -120,7 +121,8 @@ def _the_same(plan: Plan, source: Source, verify: str, held: Held) -> Certificat
         done = _entered(replace(plan, stamp=False), source, verify, held)
     except InputError as why:
         raise _refusal(HINT_OF_PLACES) from why
-    if b"".join(held.parts) != b"".join(source.windows()):
+    same = b"".join(held.parts) == b"".join(source.windows())
+    if done.checked["moves"] or not same:
         raise _refusal(HINT_OF_PLACES)
     done.assumed.remove(AT_ONE_PLACE)
     return done
