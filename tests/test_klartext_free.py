@@ -206,10 +206,11 @@ class Drawn:
 
     def belt(self):
         """Draw an arc, a line off it, and an arc that the line goes into, all by their centres."""
+        before = self.at, self.along
         self.arc()
         while "CCX" not in self.lines[-1]:
             del self.lines[-1], self.points[-1]
-            self.at, self.along = self.points[-1] if self.points else self.at, None
+            self.at, self.along = before
             self.arc()
         words = [w for w in self.lines[-1].split() if w[0] not in "XY" and w[:3] != "CCA"]
         self.lines[-1] = " ".join(words)
