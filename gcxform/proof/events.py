@@ -30,11 +30,11 @@ from gcxform.toolpath.path import Event, Toolpath
 from gcxform.values import dataclass
 
 
-def _machine_last(events: list[Event], machine: str) -> list[Event]:
-    """Return events with the code that stands before axis words behind the others of its block."""
+def _machine_last(events: list[Event], machine: str, home: set[int]) -> list[Event]:
+    """Return events in which a way home of these lines is said behind the others of its block."""
     for n in range(len(events) - 2, -1, -1):
-        at = n
-        while at + 1 < len(events) and events[at].what == machine and _beside(*events[at : at + 2]):
+        at, moves = n, events[n].what == machine and events[n].line in home
+        while moves and at + 1 < len(events) and _beside(*events[at : at + 2]):
             events[at], events[at + 1] = events[at + 1], events[at]
             at += 1
     return events
@@ -71,7 +71,9 @@ class EventProof:
         if alone:  # they have blocks of their own, before their lines
             told = tuple(sorted(told, key=lambda e: (e.line, e.what not in alone)))
         there = [self._as_there(event, path) for event in told if saying.instead(event.what)]
-        return tuple(_machine_last(there, saying.machine))
+        codes = self.context.source.codes
+        home = {e.line for e in told if e.what in codes and codes[e.what].act == HOME}
+        return tuple(_machine_last(there, saying.machine, home))
 
     def _until_end(self, told: tuple[Event, ...]) -> tuple[Event, ...]:
         """Return events without further ends behind one at which the target alone stops."""

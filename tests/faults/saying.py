@@ -237,6 +237,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/length-ended-for-grbl]",
     ),
     Mutation(
+        "saying: a G53 of the source is taken for a way home",
+        "gcxform/proof/events.py",
+        "events[n].what == machine and events[n].line in home",
+        "events[n].what == machine",
+        "tests/test_corpus.py::test_case[dialects/across/machine-beside-length]",
+    ),
+    Mutation(
         "saying: G53 stands before a G49 of its block",
         "gcxform/proof/events.py",
         "events[at], events[at + 1] = events[at + 1], events[at]",
