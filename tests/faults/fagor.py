@@ -38,7 +38,7 @@ MUTATIONS = (
     Mutation(
         "fagor: the end of other coordinates says nothing to the same control",
         PROGRAMS,
-        "self.reading.stays and head in tables.OFF",
+        'self.reading.stays and head in tables.OFF | {"#KIN"}',
         'self.reading.stays and head == "#TOOL"',
         f"{CASE}kept-coordinates]",
     ),

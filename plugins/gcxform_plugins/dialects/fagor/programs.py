@@ -264,7 +264,7 @@ class Programs(Flow):
         """Return the blocks of a statement; for the same control coordinates that end stay."""
         item = next(item for item in items if item.kind == "statement")
         head = item.name.split()[0]
-        if self.reading.stays and head in tables.OFF:
+        if self.reading.stays and head in tables.OFF | {"#KIN"}:
             self.refuse(f"{head}: what the words are of changes with it", item)
         return super()._statement(items)
 
