@@ -21,6 +21,7 @@ import hashlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import tempfile
 import threading
@@ -38,7 +39,10 @@ __all__ = ["CanonMove", "CanonProgram", "Rejected", "available", "run", "run_man
 
 MARK = re.compile(r'"gcx (\d+) (\d+)"')
 NOISE = ("executing", "link (updating")
-TIMEOUT = 10.0  # seconds
+TIMEOUT = 10  # seconds of a processor: on a machine that is busy all take long, and end
+WAITED = 60.0  # seconds, for one that sleeps
+LIMITED = ["sh", "-c", f'ulimit -t {TIMEOUT} && exec "$@"', "sh"]
+TOO_LONG = (-signal.SIGXCPU, -signal.SIGKILL)
 KEPT = Path(__file__).with_name(".rs274")
 KEEPS = os.environ.get("HYPOTHESIS_PROFILE", "ci") == "ci"  # other profiles do not ask it again
 BATCH = 250  # programs in one file
@@ -188,10 +192,12 @@ def _asked(source: bytes, files: Mapping[str, bytes] = MappingProxyType({})) -> 
         for name, content in {**files, "in.ngc": source}.items():
             (at / name).write_bytes(content)
         (at / "tools").write_text("".join(map(_tool_line, range(1, 100))))
-        command = ["rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
+        command = [*LIMITED, "rs274", "-g", "-t", "tools", "-v", "var", "in.ngc", "out"]
         home = os.environ | {"HOME": folder}
-        done = subprocess.run(command, cwd=at, env=home, capture_output=True, timeout=TIMEOUT)
+        done = subprocess.run(command, cwd=at, env=home, capture_output=True, timeout=WAITED)
         text = (at / "out").read_text("latin-1") if (at / "out").exists() else ""
+    if done.returncode in TOO_LONG:
+        raise subprocess.TimeoutExpired(command, TIMEOUT)
     said = [s for s in done.stderr.decode("latin-1").splitlines() if not s.startswith(NOISE)]
     if done.returncode and not said:
         raise RuntimeError(f"rs274 ended with {done.returncode} and no message")
