@@ -57,16 +57,28 @@ class Depending:
     def _follows(self, line: int) -> bool:
         """Whether what a block sets can be said by other words (`gcxform/emit/presets.py`).
 
-        A place that it stores has no words: ways home would lead to where the machine was told to
-        be, now and in other programs.
+        What outlives the program is no such thing: ways home would lead to where the machine was
+        told to be, and tools would be longer by its error, now and in other programs.
         """
         acts = {act.name: act.code for act in self.task.table.meanings[self.task.shape[line]].acts}
-        if STORES not in acts or not self.task.manner.compensates:
+        stores = acts.get(STORES) or self._table_written(line)
+        if not stores or not self.task.manner.compensates:
             return self.task.manner.compensates and not self.task.manner.crossing
-        message = f"{acts[STORES]} would store where the machine is told to stand to make up for"
+        message = f"{stores} would store where the machine is told to stand to make up for"
         message += " its error, for this program and others"
         hint = "store it before the first move, or leave out the pass that compensates"
         raise InputError.one("GX506", message, self.task.location(line), hint)
+
+    def _table_written(self, line: int) -> str:
+        """Return the G10 of a line that takes a tool's length from where an axis stands, if any."""
+        kinds = self.task.manner.source.offset_rule.g10_tools
+        first = int(self.task.window.first_number[line])
+        for act in self.task.table.meanings[int(self.task.shape[line])].acts:
+            slot = dict(act.slots).get("L") if act.name == "set-work" else None
+            kind = 0.0 if slot is None else float(self.task.read.value[first + slot])
+            if kind in kinds:
+                return f"{act.code} L{kind:g}"
+        return ""
 
     def _preset(self, line: int) -> list[bool] | None:
         """Return which axes a block sets to where they stand, if that is all it does (G92)."""

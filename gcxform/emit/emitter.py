@@ -35,6 +35,7 @@ from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.modal.program_end import Frame
 from gcxform.syntax.scan import Window
+from gcxform.syntax.source import line_end
 from gcxform.syntax.tree import Comment, Item
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct
@@ -65,8 +66,7 @@ class Emitted:
         line = window.first_line + int(np.argmax(ends))
         lines = self.text.splitlines(keepends=True)
         at = int(np.flatnonzero(self.source == line)[-1])
-        end = b"\r\n" if lines[at - 1 if at else at].endswith(b"\r\n") else b"\n"
-        lines.insert(at, " ".join(codes).encode() + end)
+        lines.insert(at, " ".join(codes).encode() + line_end(lines[at - 1 if at else at]))
         source, nth = np.insert(self.source, at, line), np.insert(self.nth, at, 0)
         return Emitted(b"".join(lines), source, nth)
 

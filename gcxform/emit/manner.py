@@ -13,7 +13,7 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
 from gcxform.dialect.saying import Saying
 from gcxform.modal.interpreter import Interpreted
-from gcxform.modal.meaning.meaning import PRESETS
+from gcxform.modal.meaning.meaning import PRESETS, Act
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Flags, Floats, Ints
@@ -157,6 +157,7 @@ class Task:
         """Return the lines that set coordinates from where the axes stand.
 
         G10 L2 does not, nor L20 where it only names more work offsets: both say where a zero is.
+        Nor does what gives a length of a tool by a number of its own (`_states_length`).
         """
         lines = np.flatnonzero(self.table.flag("presets", self.shape)).tolist()
         return [line for line in lines if self._counts_from_axes(line)]
@@ -167,9 +168,15 @@ class Task:
             slot = dict(act.slots).get("L") if act.name == "set-work" else None
             first = int(self.window.first_number[line])
             kind = np.nan if slot is None else float(self.read.value[first + slot])
-            if act.name in PRESETS and not (kind == 2 or (kind == 20 and named)):
+            stated = kind == 2 or (kind == 20 and named) or self._states_length(act, kind)
+            if act.name in PRESETS and not stated:
                 return True
         return False
+
+    def _states_length(self, act: Act, kind: float) -> bool:
+        """Whether G10 writes into the tool table what it says, by L1 or without words of axes."""
+        by_axes = any(address in self.manner.source.axes for address, _ in act.slots)
+        return kind in self.manner.source.offset_rule.g10_tools and (kind == 1 or not by_axes)
 
     def location(self, line: int, column: int = 0, width: int = 0) -> Location:
         """Return a place in a line of the window; column from 0."""

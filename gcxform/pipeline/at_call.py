@@ -26,7 +26,7 @@ from gcxform.modal.reader import windows_of
 from gcxform.modal.state import State
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Run
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, line_end
 from gcxform.system.arrays import Floats
 
 FROM_THE_START = "GX317"
@@ -42,7 +42,7 @@ class Led(Source):
 
     def __init__(self, source: Source, line: int, blocks: tuple[str, ...]) -> None:
         lines = b"".join(source.windows()).splitlines(keepends=True)
-        end = b"\r\n" if lines[line - 1].endswith(b"\r\n") else b"\n"
+        end = line_end(lines[line - 1])
         lines[line - 1 : line - 1] = [block.encode() + end for block in blocks]
         super().__init__(io.BytesIO(b"".join(lines)), source.name, source.written)
         self.folder, self.suffix, self.state = source.folder, source.suffix, source.state
@@ -56,21 +56,24 @@ class Led(Source):
 def led_in(source: Source, plan: Plan, where: Location) -> Source | None:
     """Return a program that goes, before its first move, to where the axes stand.
 
-    None if another place is meant, or nobody says in which modes that block would be read.
+    None if another place is meant, or one that is executed again: in other modes, perhaps, and at
+    another place. None too if nobody says in which modes that block would be read.
     """
     entry, axes = plan.reading.entry, "".join(filter(LINEAR.__contains__, plan.reading.start))
     said = {plan.source.codes[code].group: code for code in entry.modes}
-    window, reader = next(windows_of(source, plan.source))
+    straight = written_out(source, plan.source, plan.machine_reading, plan.target)
+    window, reader = next(windows_of(straight, plan.source))
     reader.table.update()
-    before = window.shape[: where.line - 1]
+    here = [n for n in range(len(window)) if straight.place_of(n + 1) == (source.name, where.line)]
+    before = window.shape[: here[0] if here else 0]
     moves = reader.table.slots[before][:, [ord(axis) - ord("A") for axis in LINEAR]] >= 0
     for group, codes in SAID_ANEW.items():
         stated = reader.table.groups[before, COLUMNS.index(group)]
         if (stated >= 0).any():
             said[group] = codes.get(int(stated[stated >= 0][-1]), "")
-    if where.file != source.name or not axes or moves.any() or "distance" not in said:
+    if where.file != source.name or len(here) != 1 or not axes or moves.any():
         return None
-    if "" in said.values():
+    if "distance" not in said or "" in said.values():
         return None
     way = "G0 " + " ".join(f"{axis}0." for axis in axes)
     incremental = said["distance"] == "G91"

@@ -208,7 +208,7 @@ def _done(
     run = Run(plan, source, verify, leaves)
     _refuse_unknown(run, plan)
     out = Output(held.parts.append, held.lines)
-    run.over(out, lambda size: None, source.size + 1)
+    run.over(out, lambda size: None, max(source.size, run.source.size) + 1)
     run.check_growth(out)
     return run, out
 

@@ -259,6 +259,11 @@ def lines_in(text: bytes) -> int:
     return ends + (not text.endswith((b"\n", b"\r")))
 
 
+def line_end(line: bytes) -> bytes:
+    """Return what ends a line; LF if it is the last one and has none."""
+    return line[len(line.rstrip(b"\r\n")) :] or b"\n"
+
+
 def program_of(given: object, name: str = "-") -> Source:
     """Return a program: its bytes, or the file of that name. Raises FileError and UsageError."""
     if isinstance(given, bytes | bytearray | memoryview):

@@ -116,6 +116,20 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/named-file-calls-back]",
     ),
     _flow(
+        "a rapid is put before a block that is executed again",
+        "gcxform/pipeline/at_call.py",
+        "len(here) != 1",
+        "not here",
+        "tests/test_corpus.py::test_case[flow/alone-in-a-loop]",
+    ),
+    _flow(
+        "a subprogram that executes more than it has is read in pieces",
+        "gcxform/pipeline/subprogram.py",
+        "max(source.size, run.source.size) + 1",
+        "source.size + 1",
+        "tests/test_corpus.py::test_case[flow/alone-long-loop]",
+    ),
+    _flow(
         "a compensated subprogram goes away from where its caller expects it",
         "gcxform/pipeline/at_call.py",
         "gap = before.position - after.position",

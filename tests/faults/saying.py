@@ -27,6 +27,27 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[printers/renumber-no-numbers]",
     ),
     Mutation(
+        "saying: the speed of the spindle goes with a G97 that is left out",
+        "plugins/gcxform_plugins/dialects/fanuc.py",
+        'v.inert("spindle-mode", act="rpm")',
+        'v.inert("spindle-mode", "S", act="rpm")',
+        f"{ACROSS}[dialects/across/speed-beside-g97]",
+    ),
+    Mutation(
+        "saying: a bare way home moves axes whose home is not known",
+        "gcxform/modal/moves/home.py",
+        "if not np.isfinite(home[named]).all():",
+        "if words and not np.isfinite(home[named]).all():",
+        f"{ACROSS}[dialects/across/home-of-all-unknown]",
+    ),
+    Mutation(
+        "saying: a bare way home leaves an axis that no word is for",
+        "gcxform/modal/moves/home.py",
+        "or not every.issubset(track.axes):",
+        "or not every.intersection(track.axes):",
+        f"{ACROSS}[dialects/across/home-of-all-and-one-more]",
+    ),
+    Mutation(
         "saying: a slash is kept that another control asks a switch for",
         "gcxform/emit/manner.py",
         "return one.block_delete == other.block_delete",
@@ -148,8 +169,8 @@ MUTATIONS = (
     Mutation(
         "saying: a way home by way of a point is one by G53",
         "gcxform/modal/moves/home.py",
-        "if not (still or not words):",
-        "if False:",
+        "if not (still or not words) or not every.issubset(track.axes):",
+        "if not every.issubset(track.axes):",
         HERE,
     ),
     Mutation(

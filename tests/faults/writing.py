@@ -6,6 +6,20 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "writing: a length that G10 L1 states counts from where the axes stand",
+        "gcxform/emit/manner.py",
+        "stated = kind == 2 or (kind == 20 and named) or self._states_length(act, kind)",
+        "stated = kind == 2 or (kind == 20 and named)",
+        "tests/test_corpus.py::test_case[volumetric/tool-table-stated]",
+    ),
+    Mutation(
+        "writing: a tool is as long as the machine is told to stand away",
+        "gcxform/emit/depending.py",
+        "if kind in kinds:",
+        "if kind in kinds and kind == 1:",
+        "tests/test_corpus.py::test_case[volumetric/tool-table-from-axes]",
+    ),
+    Mutation(
         "writing: a run of copied lines goes on over a line that is not copied",
         "gcxform/emit/render.py",
         " | (is_copy[1:] & (np.diff(source) != 1))",
@@ -138,8 +152,8 @@ MUTATIONS = (
     Mutation(
         "writing: G10 L20 does not count from where the axes stand",
         "gcxform/emit/manner.py",
-        "not (kind == 2 or (kind == 20 and named))",
-        "kind not in (2, 20)",
+        "stated = kind == 2 or (kind == 20 and named)",
+        "stated = kind in (2, 20)",
         CORPUS + "[hazards/zero-set-here-elsewhere]",
     ),
     Mutation(
@@ -187,7 +201,7 @@ MUTATIONS = (
     Mutation(
         "zeros: G28.1 stores where the machine is told to be",
         "gcxform/emit/depending.py",
-        "if STORES not in acts or not self.task.manner.compensates:",
+        "if not stores or not self.task.manner.compensates:",
         "if True:",
         CORPUS + "[volumetric/zeros-stored]",
     ),
@@ -222,15 +236,15 @@ MUTATIONS = (
     Mutation(
         "writing: G10 L2 counts from where the axes stand",
         "gcxform/emit/manner.py",
-        "not (kind == 2 or (kind == 20 and named))",
-        "not (kind == 20 and named)",
+        "stated = kind == 2 or (kind == 20 and named)",
+        "stated = kind == 20 and named",
         CORPUS + "[volumetric/zero-set-behind]",
     ),
     Mutation(
         "writing: L20 of more work offsets counts from where the axes stand",
         "gcxform/emit/manner.py",
-        "not (kind == 2 or (kind == 20 and named))",
-        "kind != 2",
+        "stated = kind == 2 or (kind == 20 and named)",
+        "stated = kind == 2",
         CORPUS + "[dialects/fanuc/more-offset-set-behind]",
     ),
 )

@@ -73,9 +73,8 @@ class Times:
         for event in path.events:
             if event.what == "S":
                 self.spindle = event.values[0][1]
-            elif event.what in ("G96", "G97"):  # S is a speed of the surface, or of the spindle
-                per_turn = dict(event.values).get("S", np.nan)
-                self.spindle = per_turn if event.what == "G97" else np.nan
+            elif event.what == "G96":  # S is a speed of the surface
+                self.spindle = np.nan
             else:
                 continue
             speed[event.row :] = self.spindle

@@ -103,12 +103,17 @@ def _home(track: Track, line: int, code: str) -> Own:
 def _note_machine(
     track: Track, line: int, code: str, words: dict[str, float], home: list[float]
 ) -> None:
-    """Note the frame of the machine, if the block goes nowhere but home, and home is known."""
-    still = track.modes.incremental[line] and not any(words.values())
-    if not (still or not words):
-        return
+    """Note the frame of the machine, if the block goes nowhere but home, and home is known.
+
+    One that names no axis moves all that there are: those of the program, and those that the
+    machine file has a home of, for which there must be words.
+    """
     frames = track.state.frames
-    named = words or frames.homes.get("G28", {})
+    every = {*track.axes, *frames.homes.get(code, {})} - {EXTRUDER}
+    still = track.modes.incremental[line] and not any(words.values())
+    if not (still or not words) or not every.issubset(track.axes):
+        return
+    named = words or every
     if not all(isfinite(home[k]) for k, axis in enumerate(track.axes) if axis in named):
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())

@@ -132,7 +132,7 @@ class Fanuc(gx.Dialect):
         "G5": v.inert("non-modal", "PQR", act="look-ahead"),
         "G5.1": v.inert("non-modal", "PQR", act="look-ahead"),
         **{code: v.inert("retract") for code in ("G98", "G99")},
-        "G97": v.inert("spindle-mode", "S", act="rpm"),
+        "G97": v.inert("spindle-mode", act="rpm"),
         "G96": v.inert("spindle-mode", "SP"),
         **{code: v.inert("cancel", act="cancel") for code in ("G67", "G13.1", "G23")},
         "G22": v.inert("stroke", "XYZIJK", "XYZIJK"),

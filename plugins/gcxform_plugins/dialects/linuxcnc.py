@@ -132,7 +132,7 @@ class LinuxCNC(gx.Dialect):
         **{code: v.inert("retract") for code in ("G98", "G99")},
         "G7": v.frame("diameter", "diameter"),
         "G8": v.frame("diameter", "diameter"),
-        "G97": v.inert("spindle-mode", "S", act="rpm"),
+        "G97": v.inert("spindle-mode", act="rpm"),
         "G96": v.inert("spindle-mode", "DS"),
         "G10": v.frame("non-modal", "set-work", v.AXES + "LPRIJQ"),
         "G52": v.frame("non-modal", "local", v.AXES),

@@ -102,7 +102,7 @@ class Fagor(gx.Dialect):
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),
-        "G97": v.inert("spindle-mode", "S", act="rpm"),
+        "G97": v.inert("spindle-mode", act="rpm"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         "G61": v.inert("path", act="exact-path"),
         "G64": v.inert("path", act="blend"),
