@@ -43,6 +43,7 @@ class Positions:
         self._mixed |= bool(path.blocks.inch[:1].any()) != bool(believed.inch)
         self._mixed |= self._off_grid()
         self._turning = turns_only(path) & (path.kind == Kind.LINE) & (path.form == Form.PLAIN)
+        self._turning[1:] &= path.frame[1:] == path.frame[:-1]  # words are those of a frame
         self.step: list[Floats | float] = []
         self.programmed = np.empty((axes, rows), np.bool_).T
         self.write = np.empty((axes, rows), np.bool_).T

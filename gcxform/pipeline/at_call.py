@@ -22,7 +22,7 @@ from gcxform.emit.numbers import text_of
 from gcxform.flow.straightened import written_out
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import COLUMNS, NUMBER
-from gcxform.modal.reader import windows_of
+from gcxform.modal.reader import WindowReader, windows_of
 from gcxform.modal.state import State
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Run
@@ -62,7 +62,8 @@ def led_in(source: Source, plan: Plan, where: Location) -> Source | None:
     entry, axes = plan.reading.entry, "".join(filter(LINEAR.__contains__, plan.reading.start))
     said = {plan.source.codes[code].group: code for code in entry.modes}
     straight = written_out(source, plan.source, plan.machine_reading, plan.target)
-    window, reader = next(windows_of(straight, plan.source))
+    reader = WindowReader(plan.source)
+    window = reader.read(b"".join(straight.windows()))
     reader.table.update()
     here = [n for n in range(len(window)) if straight.place_of(n + 1) == (source.name, where.line)]
     before = window.shape[: here[0] if here else 0]

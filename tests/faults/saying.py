@@ -27,13 +27,6 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[printers/renumber-no-numbers]",
     ),
     Mutation(
-        "saying: the speed of the spindle goes with a G97 that is left out",
-        "plugins/gcxform_plugins/dialects/fanuc.py",
-        'v.inert("spindle-mode", act="rpm")',
-        'v.inert("spindle-mode", "S", act="rpm")',
-        f"{ACROSS}[dialects/across/speed-beside-g97]",
-    ),
-    Mutation(
         "saying: a bare way home moves axes whose home is not known",
         "gcxform/modal/moves/home.py",
         "if not np.isfinite(home[named]).all():",

@@ -6,6 +6,13 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "writing: where axes rest behind a shift is said in the words before it",
+        "gcxform/emit/positions.py",
+        "self._turning[1:] &= path.frame[1:] == path.frame[:-1]",
+        "self._turning[1:] &= True",
+        "tests/test_corpus.py::test_case[dialects/across/turned-behind-a-shift]",
+    ),
+    Mutation(
         "writing: a length that G10 L1 states counts from where the axes stand",
         "gcxform/emit/manner.py",
         "stated = kind == 2 or (kind == 20 and named) or self._states_length(act, kind)",
