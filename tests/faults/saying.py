@@ -27,18 +27,25 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[printers/renumber-no-numbers]",
     ),
     Mutation(
+        "saying: the speed of the spindle goes with a G97 that is left out",
+        "plugins/gcxform_plugins/dialects/fanuc.py",
+        'v.inert("spindle-mode", act="rpm")',
+        'v.inert("spindle-mode", "S", act="rpm")',
+        f"{ACROSS}/speed-beside-g97]",
+    ),
+    Mutation(
         "saying: a bare way home moves axes whose home is not known",
         "gcxform/modal/moves/home.py",
         "if not np.isfinite(home[named]).all():",
         "if words and not np.isfinite(home[named]).all():",
-        f"{ACROSS}[dialects/across/home-of-all-unknown]",
+        f"{ACROSS}/home-of-all-unknown]",
     ),
     Mutation(
         "saying: a bare way home leaves an axis that no word is for",
         "gcxform/modal/moves/home.py",
         "or not every.issubset(track.axes):",
         "or not every.intersection(track.axes):",
-        f"{ACROSS}[dialects/across/home-of-all-and-one-more]",
+        f"{ACROSS}/home-of-all-and-one-more]",
     ),
     Mutation(
         "saying: a slash is kept that another control asks a switch for",
