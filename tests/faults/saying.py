@@ -36,15 +36,15 @@ MUTATIONS = (
     Mutation(
         "saying: a bare way home moves axes whose home is not known",
         "gcxform/modal/moves/home.py",
-        "if not np.isfinite(home[named]).all():",
-        "if words and not np.isfinite(home[named]).all():",
+        "for k, axis in enumerate(track.axes) if axis in named):",
+        "for k, axis in enumerate(track.axes) if axis in words):",
         f"{ACROSS}/home-of-all-unknown]",
     ),
     Mutation(
         "saying: a bare way home leaves an axis that no word is for",
         "gcxform/modal/moves/home.py",
-        "or not every.issubset(track.axes):",
-        "or not every.intersection(track.axes):",
+        "or not named.issubset(track.axes):",
+        "or not named.intersection(track.axes):",
         f"{ACROSS}/home-of-all-and-one-more]",
     ),
     Mutation(
@@ -169,8 +169,8 @@ MUTATIONS = (
     Mutation(
         "saying: a way home by way of a point is one by G53",
         "gcxform/modal/moves/home.py",
-        "if not (still or not words) or not every.issubset(track.axes):",
-        "if not every.issubset(track.axes):",
+        "if not (still or not words) or not named.issubset(track.axes):",
+        "if not named.issubset(track.axes):",
         HERE,
     ),
     Mutation(

@@ -111,9 +111,9 @@ def _note_machine(
     frames = track.state.frames
     every = {*track.axes, *frames.homes.get(code, {})} - {EXTRUDER}
     still = track.modes.incremental[line] and not any(words.values())
-    if not (still or not words) or not every.issubset(track.axes):
+    named = set(words) or every
+    if not (still or not words) or not named.issubset(track.axes):
         return
-    named = words or every
     if not all(isfinite(home[k]) for k, axis in enumerate(track.axes) if axis in named):
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
