@@ -24,7 +24,7 @@ ANSWERS: dict[str, Any] = {
     "radius": 0.001,
     "null-compare": "zero",
     "ends": "unknown",
-    "inert-m": [50],
+    "inert-m": [6, 50],
     "inch-feeds": "inches",
     "for-end": "included",
     "subroutine-locals": "shared",

@@ -65,6 +65,7 @@ class Control:
     )
     hole: dict[str, float] = field(default_factory=dict)
     called: tuple[float, ...] = ()
+    machine: bool = False
     over: bool = False
 
     def zero(self, k: int) -> float:
@@ -108,13 +109,16 @@ def block(control: Control, line: str) -> None:
     text = re.sub(rf"{comment}|^\s*N\d+", "", line.upper()).strip()
     if not text or text[0] in "%O":
         return
+    if text in ("#MCS ON", "#MCS OFF"):
+        control.machine = text.endswith("ON")
+        return
     if found := HOLE.fullmatch(text):
         given = tuple(float(each or "nan") for each in (found[2] or "").split(",") if found[2])
         control.called = given if found[1] else ()
         if not found[1] and given:
             drilled(control, given)
         return
-    machine = "SUPA" in text
+    machine = "SUPA" in text or control.machine
     found = WORD.findall(re.sub(r"SUPA|TURN\s*=\s*\d+", "", text).replace("CR=", "R="))
     codes = [float(number) for letter, number in found if letter == "G"]
     functions = [int(float(number)) for letter, number in found if letter == "M"]
