@@ -15,7 +15,7 @@ from cli_kit import call
 from missing_kit import filled, pasted
 
 from gcxform.catalogue.offers import Edit, Offer, StepBefore, ways
-from gcxform.catalogue.questions import Question, kind_of, questions
+from gcxform.catalogue.questions import questions
 from gcxform.catalogue.settings import ON_COMMAND_LINE, Setting, for_chain
 from gcxform.cli.program.used import used_by
 from gcxform.contract.options import describe
@@ -28,7 +28,6 @@ from gcxform.testing.cases import Case, Outcome, outcome
 MACHINE = "machine.toml"
 OF_MACHINE = ("control", "tool", "work-offset", "home")
 OPEN = 'fill in what is "?"'
-ASKED: set[frozenset[Question]] = set()
 TYPED: set[str] = set()
 """The ways that have been typed: each kind of them once."""
 
@@ -85,14 +84,12 @@ def go_out(case: Case, found: Outcome, folder: Path, places: Mapping[str, Path])
 def one_round(case: Case, found: Outcome, folder: Path) -> bool:
     """Fill in what `check` asks for, and check again: nothing that a setting helps may be left.
 
-    Return whether there was anything to ask; of cases that ask the same, one is enough.
+    Return whether there was anything to ask.
     """
-    asked = frozenset(kind_of(q) for each in found.diagnostics for q, _ in questions(each.hint))
-    if not asked or asked in ASKED or "pipeline.toml" not in case.sections:
+    asked = [each for each in found.diagnostics if [*questions(each.hint)]]
+    if not asked or "pipeline.toml" not in case.sections:
         return False
     is_open = b'"?"' in case.sections["pipeline.toml"]
-    if not is_open:
-        ASKED.add(asked)
     (folder / "input.nc").write_bytes(case.sections["input.nc"])
     with chdir(folder):
         first = call("check", "-p", "pipeline.toml", "input.nc")
