@@ -136,3 +136,25 @@ def test_an_error_names_few_of_many_calls() -> None:
     with pytest.raises(gx.InputError, match="GX224") as error:
         _ = gx.read(text, "haas").executed
     assert error.value.diagnostics[0].context.count("M97") == NAMED
+
+
+INSIDE_EACH_OTHER = b"""G21 G90 G17 G94 F100
+G0 X0 Y0 Z5
+o1 if [#5399 GT 1]
+G1 X5
+o2 if [#5399 GT 2]
+G1 Y5
+o2 endif
+S100
+o1 endif
+G1 Z1
+M2
+"""
+
+
+@pytest.mark.parametrize("shapes", [1, 2, 3, 20_000])
+def test_a_table_that_has_grown_large_is_not_begun_anew_within_a_branch(monkeypatch, shapes):
+    """What the outer branch may have moved is told by lines that were read before the inner one."""
+    monkeypatch.setattr("gcxform.modal.reader.SHAPES_AT_MOST", shapes)
+    path = gx.read(INSIDE_EACH_OTHER, "linuxcnc").path
+    np.testing.assert_array_equal(path.end[-1], [np.nan, np.nan, 1.0])

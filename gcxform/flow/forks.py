@@ -18,12 +18,15 @@ from gcxform.flow.run_state import UNKNOWN, differs
 from gcxform.flow.skipped_stretches import Effect, Join, effect_of, other_modes
 from gcxform.modal.expressions.value import Evaluator
 from gcxform.modal.lines import NOTHING
-from gcxform.modal.reader import WindowReader
+from gcxform.modal.reader import new_table
+from gcxform.syntax.scan import scan
 from gcxform.syntax.tree import Block, Statement
 from gcxform.syntax.undecided import Undecided
 from gcxform.system.arrays import Ints
 from gcxform.values import dataclass
 
+FEW_BYTES = 4096  # lines that a loop executes again and again; what is longer is read in columns
+MOST_KNOWN = 20_000  # lines whose shapes are remembered
 HINT = "set what it reads with parameters in [input], or use passes that keep positions"
 
 
@@ -49,8 +52,10 @@ class Forks:
         self.perhaps: set[int] = set()
         self.ends: set[int] = set()
         self.joins: list[Join] = []
-        self.reader = WindowReader(run.dialect)
+        self.table = new_table(run.dialect)  # one to the end: the shapes are numbers in it
         self.shapes: list[int] = []
+        self.known: dict[bytes, int] = {}
+        self.still: set[int] = set()  # written lines that neither move nor set anything
         self.seen = 0
 
     @property
@@ -117,7 +122,7 @@ class Forks:
         """Return what is changed by the lines behind one, up to the last that is written."""
         shapes = np.array(self._shapes()[since + 1 :], np.int64)
         shapes[[line - since - 1 for line in self.ends if line > since]] = NOTHING
-        return effect_of(self.run, self.reader.table, shapes, self.since(since)[1])
+        return effect_of(self.run, self.table, shapes, self.since(since)[1])
 
     def since(self, line: int) -> tuple[bytes, Ints]:
         """Return what was written behind an executed line, and the lines that it stands for."""
@@ -132,21 +137,34 @@ class Forks:
     def _shapes(self) -> list[int]:
         """Return the shapes of all written lines."""
         text, self.seen = b"".join(self.run.text[self.seen :]), len(self.run.text)
-        if text:
-            window = self.reader.read(text)
-            self.reader.table.update()
-            shapes = window.shape.copy()
-            if self.run.reading.blocks_with_a_slash(self.run.dialect) != "execute":
-                shapes[self.reader.table.flag("deleted", shapes)] = NOTHING
-            self.shapes += shapes.tolist()
+        if len(text) > FEW_BYTES:
+            self.shapes += self._scanned(text)
+            return self.shapes
+        if len(self.known) > MOST_KNOWN:
+            self.known.clear()
+        lines = text.splitlines()
+        for number in self.still.intersection(range(len(self.shapes), self.run.blocks)):
+            lines[number - len(self.shapes)] = b""
+        if new := [line for line in dict.fromkeys(lines) if line not in self.known]:
+            self.known |= zip(new, self._scanned(b"\n".join(new) + b"\n"), strict=True)
+        self.shapes += map(self.known.__getitem__, lines)
         return self.shapes
+
+    def _scanned(self, text: bytes) -> list[int]:
+        """Return the shapes of lines; those that are not executed have none."""
+        shapes = scan(text, 0, self.table.shapes).shape.copy()
+        self.table.update()
+        if self.run.reading.blocks_with_a_slash(self.run.dialect) != "execute":
+            shapes[self.table.flag("deleted", shapes)] = NOTHING
+        found: list[int] = shapes.tolist()
+        return found
 
     def refuse_modes(self) -> None:
         """Refuse modes that count where only the machine knows which is in force."""
         if not self.joins:
             return
         run, shapes = self.run, np.array(self._shapes(), np.int64)
-        if (other := other_modes(run, self.reader.table, shapes, self.joins)) is not None:
+        if (other := other_modes(run, self.table, shapes, self.joins)) is not None:
             run.line, code = other
             message = f"only the machine knows whether {code} is in force here"
             raise run.refusal("GX220", message, f"program it behind the branch, or {HINT}")

@@ -287,6 +287,7 @@ class KeptOWords(Forks):
             more.append((*span_of(label), kept.label))
         if keyword and keyword != word.keyword:
             more.append((*span_of(said), keyword))
+        self.still.add(run.blocks)
         self.keep(block, statement, more)
 
     # --- the end ---

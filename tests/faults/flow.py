@@ -635,7 +635,7 @@ MUTATIONS = (
     Mutation(
         "branches: modes may be those of one way",
         "gcxform/flow/forks.py",
-        "if (other := other_modes(run, self.reader.table, shapes, self.joins)) is not None:",
+        "if (other := other_modes(run, self.table, shapes, self.joins)) is not None:",
         "if False:",
         CASES,
     ),
@@ -750,6 +750,20 @@ MUTATIONS = (
         "if kept.construct.lines[0] != construct.lines[0]:",
         "if False:",
         "tests/test_corpus.py::test_case[flow/oword-break-lost]",
+    ),
+    Mutation(
+        "kept O-words: shapes are numbers in a table that is begun anew",
+        "gcxform/flow/forks.py",
+        "        shapes = scan(text, 0,",
+        "        self.table = new_table(self.run.dialect)\n        shapes = scan(text, 0,",
+        "tests/test_flow.py::test_a_table_that_has_grown_large_is_not_begun_anew_within_a_branch",
+    ),
+    Mutation(
+        "kept O-words: the line before an O-word moves nothing",
+        "gcxform/flow/forks.py",
+        "lines[number - len(self.shapes)] = b",
+        "lines[number - len(self.shapes) - 1] = b",
+        "tests/test_flow.py::test_a_table_that_has_grown_large_is_not_begun_anew_within_a_branch",
     ),
     Mutation(
         "kept O-words: a label stands twice",
