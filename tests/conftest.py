@@ -68,6 +68,15 @@ def shared() -> Path:
 
 
 @pytest.fixture
+def one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read and prove in this process: to copy one in which thousands of tests wait takes 50 ms.
+
+    `test_worker.py` has processes.
+    """
+    monkeypatch.setattr("gcxform.system.worker.LINUX", False)
+
+
+@pytest.fixture
 def tmp_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return an empty folder; pytest's own looks for its number among those of all tests before."""
     return tmp_path_factory.mktemp(f"test{next(COUNT)}", numbered=False)

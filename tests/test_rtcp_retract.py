@@ -159,10 +159,10 @@ def test_not_where_there_is_a_way_without(tmp_path):
         steps.run(leaned)
 
 
+@pytest.mark.usefixtures("one_process")
 def test_several_cuts_are_counted_together(tmp_path, monkeypatch):
     """The certificate has the sum of all windows, and a cut does not depend on the one before."""
     monkeypatch.setattr("gcxform.syntax.source.WINDOW", 1)
-    monkeypatch.setattr("gcxform.system.worker.LINUX", False)
     steps, _, _ = steps_of(tmp_path, "ac-trunnion", LIMITS["ac-trunnion"], **OPTIONS)
     head, _, rest = round_about(tilt=25.0).partition(b"G0 X20.")
     cut = b"G0 X20." + rest.removesuffix(b"M30\n")

@@ -18,6 +18,7 @@ from gcxform.pipeline.run import Run
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 
+pytestmark = pytest.mark.usefixtures("one_process")
 CONTROL = '[control]\ntip-on = "M428"\ntip-off = "M429"\n'
 NUTATING = '[control]\ntip-on = "M429"\ntip-off = "M428"\n'
 LINUXCNC = default_registry().dialect("linuxcnc")

@@ -34,7 +34,7 @@ judged = pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is n
 
 
 @judged
-@shares(COUNT, 50)
+@shares(COUNT, 25)
 def test_a_chain_that_is_accepted_is_proved_and_right_or_refuses(seeds: range) -> None:
     total = Figures()
     for figures in chains.campaign(seeds):

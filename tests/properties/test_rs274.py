@@ -145,7 +145,7 @@ def compensation(
     )
 
 
-@shares(COUNT // 2, 60)
+@shares(COUNT // 2, 30)
 def test_linuxcnc_reads_what_gcxform_writes(seeds: range) -> None:
     """Random chains: the same events, and the machine within the budget of the program's path."""
     jobs = [job for seed in seeds if (job := written(seed)) is not None]
