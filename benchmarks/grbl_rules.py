@@ -36,6 +36,7 @@ GROUP_OF = {f"G{code}": group for group, codes in GROUPS.items() for code in cod
 GROUP_OF |= {f"M{code}": "program" for code in (0, 1, 2, 30)}
 GROUP_OF |= {f"M{code}": "spindle" for code in (3, 4, 5)} | {"M8": "coolant", "M9": "coolant"}
 MOTIONS = {f"G{code}" for code in GROUPS["motion"].split()} - {"G80"}
+DROPPED = dict.fromkeys((*range(33), ord("/")))  # blanks, what is no letter, and the slash
 USES_AXES = MOTIONS | {"G10", "G28", "G30", "G92", "G43.1", "G49"}
 PLANES = {"G17": "XYIJ", "G18": "ZXKI", "G19": "YZJK"}
 AT_START = {
@@ -227,6 +228,8 @@ def words_of(text: str) -> tuple[list[str], dict[str, float]]:
 
 def without_comments(line: str) -> str:
     """Return what is left of a line: no blanks, no `/`, no comments, capital letters."""
+    if ";" not in line and "(" not in line:
+        return line.translate(DROPPED).upper()
     kept, inside = [], False
     for letter in line:
         if inside:
