@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from functools import cached_property
 
 import numpy as np
@@ -129,11 +128,7 @@ class Lines:
         stays = {line - self.window.first_line for line in self.undecided.lines}
         wrong = [n for n in np.flatnonzero(self.flag("wrong")).tolist() if n not in stays]
         lathe = [line for line in wrong if self._refusal_code(line) == LATHE]
-        alike: Counter[int] = Counter()
-        for line in lathe[:1] or wrong:  # one sign of a lathe explains all the others
-            alike[int(self.shape[line])] += 1
-            if alike[int(self.shape[line])] <= Findings.enough:
-                self.findings.add_refusal(line)
+        self.findings.add_refusals(lathe[:1] or wrong)  # one sign of a lathe explains all others
         self.findings.raise_if_any()
 
     def _refusal_code(self, line: int) -> str:

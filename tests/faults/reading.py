@@ -10,9 +10,9 @@ OF_TREES = "tests/test_tree_shapes.py"
 MUTATIONS = (
     Mutation(
         "findings: of very many wrong lines the first fifty are told, and of others none",
-        "gcxform/modal/lines.py",
-        "            alike[int(self.shape[line])] += 1\n",
-        "            alike[0] = alike[int(self.shape[line])] = alike[0] + 1\n",
+        "gcxform/modal/findings.py",
+        "            alike[int(self.window.shape[line])] += 1\n",
+        "            alike[0] = alike[int(self.window.shape[line])] = alike[0] + 1\n",
         "tests/test_hostile.py::test_of_very_many_wrong_lines_that_are_alike_fifty_are_told",
     ),
     Mutation(
