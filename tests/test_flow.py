@@ -10,7 +10,13 @@ import pytest
 from cli_kit import call
 
 import gcxform as gx
+from gcxform.flow.constructs import Construct
+from gcxform.flow.listing import Listing
+from gcxform.flow.lookup import Folders
+from gcxform.flow.loops_alike import alike
+from gcxform.flow.owords import OWords
 from gcxform.flow.run_state import NAMED
+from gcxform.plugin.registry import default_registry
 from gcxform.system.limits import in_force
 
 LOOP = b"G21 G90 G0 X0 Y0 Z0\no1 repeat [2]\nG91 X1\no1 endrepeat\nM2\n"
@@ -158,3 +164,38 @@ def test_a_table_that_has_grown_large_is_not_begun_anew_within_a_branch(monkeypa
     monkeypatch.setattr("gcxform.modal.reader.SHAPES_AT_MOST", shapes)
     path = gx.read(INSIDE_EACH_OTHER, "linuxcnc").path
     np.testing.assert_array_equal(path.end[-1], [np.nan, np.nan, 1.0])
+
+
+TOUCHES = {  # loops that the machine ends; whether they begin is not known of the first kind alone
+    "what the probe tells": "#5070=1\no{n} while [#5070 NE 0]\nG38.3 x-{n}\no{n} endwhile\n",
+    "where it stands": "G0 X{n}\no{n} while [#5420 LT 90]\nG38.3 X99\no{n} endwhile\n",
+    "not at all": "G0 X99\no{n} while [#5420 LT 90]\nG38.3 X99\no{n} endwhile\n",
+}
+
+
+@pytest.mark.parametrize("between", ["", "not at all"])
+@pytest.mark.parametrize("name", TOUCHES)
+def test_loops_that_are_written_alike_are_found_at_once(monkeypatch, name, between):
+    """And are what each would be found to be; one that does not begin is left out as ever."""
+    parts = [TOUCHES[each] for each in (name, between) if each]
+    loops = "".join(part.format(n=n) for n in range(10, 22) for part in parts[n % len(parts) :][:1])
+    program = f"G21 G90 G94 G17 F100\nG0 X0 Y0 Z5\n{loops}G0 X0 Y0 Z5\nM2\n".encode()
+    runs = []
+    run = OWords.run
+    monkeypatch.setattr(OWords, "run", lambda self: (runs.append(1), run(self))[1])
+    found = absolute("linuxcnc").run(program).text
+    assert len(runs) <= 8
+    monkeypatch.setattr("gcxform.flow.kept_owords.alike", lambda *_: frozenset())
+    assert absolute("linuxcnc").run(program).text == found
+
+
+@pytest.mark.parametrize(
+    "inside", ["x-{n}", "G1 X{n}", "G38.3 X#1", "#1=2\nG38.3 X{n}", "(DEBUG, a)", "M98 P1", "M70"]
+)
+def test_loops_that_may_be_others_are_found_one_by_one(inside):
+    lines = "o7 while [#5070 NE 0]\nG38.3 X5\n" + inside.format(n=3) + "\no7 endwhile\n"
+    dialect = default_registry().dialect("linuxcnc")
+    folders = Folders([], dialect.flow_rule.lookup, ".ngc")
+    listing = Listing((lines + "M2\n").encode(), dialect, "p", folders)
+    loop = Construct("while", [0, lines.count("\n") - 1])
+    assert bool(alike(listing, [loop], loop)) == (inside == "G1 X{n}")

@@ -19,6 +19,7 @@ from gcxform.dialect.arithmetic import Key
 from gcxform.flow.constructs import Construct, Constructs, OWord
 from gcxform.flow.execution import Execution
 from gcxform.flow.forks import HINT, Arrival, Forks, differ
+from gcxform.flow.loops_alike import alike
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
 from gcxform.flow.run_state import UNKNOWN
@@ -54,6 +55,10 @@ class Structured(Execution):
         return self.subprograms.arranged.construct
 
     @abstractmethod
+    def truth(self, word: OWord) -> bool | None:
+        """Return whether a condition holds; None if only the machine knows."""
+
+    @abstractmethod
     def unwind(self, depth: int) -> None:
         """Leave the calls in which the program may have ended, down to so many."""
 
@@ -71,6 +76,7 @@ class Kept:
     """A construct that stays.
 
     begin    the block before which its rounds begin, and what is known there
+    begins   whether it is a `while` whose condition is known to hold at first
     closing  the ways to the line that closes it
     following  those to its next clause
     exits    those behind it
@@ -81,6 +87,7 @@ class Kept:
     depth: int
     begin: int = 0
     known: dict[Key, float] = field(default_factory=dict)
+    begins: bool = False
     closing: list[Arrival] = field(default_factory=list)
     following: list[Arrival] = field(default_factory=list)
     exits: list[Arrival] = field(default_factory=list)
@@ -176,10 +183,19 @@ class KeptOWords(Forks):
         """Whether the loop that begins here has been found to be one that the machine ends."""
         return self.run.line in self.run.settled.kept
 
+    def is_found(self) -> bool:
+        """Whether it was itself found to be one, and not one that is written alike."""
+        return self.is_kept() and self.run.line not in self.run.settled.alike
+
+    def is_like_one_that_begins(self) -> bool:
+        """Whether it is written like one that was found, although it was known that it begins."""
+        return self.run.settled.alike.get(self.run.line, False)
+
     def open_loop(self, construct: Construct) -> None:
         """Keep a loop, from its first line."""
         run, kind = self.run, construct.kind
         kept = self._opened(construct)
+        kept.begins = kind == "while" and bool(run.truth(run.words[run.line]))
         found = run.settled.kept.get(run.line, Changes())
         if kind == "repeat":  # its count is computed once
             self._write(kept)
@@ -224,10 +240,24 @@ class KeptOWords(Forks):
         known = run.settled.kept.get(first, Changes())
         if now.within(known):
             self.perhaps.update(range(kept.begin, run.blocks) if effect.moves else ())
+            self._take_others(kept, known)
             return
         all_ = {**run.settled.kept, first: known.with_more(now)}
         needed = run.settled.needed | now.keys
-        raise Again(replace(run.settled, kept=all_, needed=needed))
+        others = {line: begins for line, begins in run.settled.alike.items() if line != first}
+        raise Again(replace(run.settled, kept=all_, needed=needed, alike=others))
+
+    def _take_others(self, kept: Kept, found: Changes) -> None:
+        """Take those that are written like a loop for the machine's too. Raises Again."""
+        settled = self.run.settled
+        if kept.construct.kind != "while" or kept.construct.lines[0] in settled.alike:
+            return
+        every = self.run.subprograms.arranged.construct.values()
+        others = alike(self.run.listing, every, kept.construct) - settled.kept.keys()
+        if others:
+            all_ = {**settled.kept, **dict.fromkeys(others, found)}
+            likened = {**settled.alike, **dict.fromkeys(others, kept.begins)}
+            raise Again(replace(settled, kept=all_, alike=likened))
 
     def leave(self, construct: Construct, keyword: str) -> bool:
         """Leave a loop that stays, or go to its end; return whether it stays.

@@ -48,8 +48,8 @@ class OWordLoops(Structured):
             self._while_of_do(construct, word)
             return
         self.broken |= self._has(construct, "break")
-        again = None if self.kept_words.is_kept() else self.truth(word)
-        if again is None:
+        again = None if self.kept_words.is_found() else self.truth(word)
+        if again is None or (again and self.kept_words.is_like_one_that_begins()):
             self.kept_words.open_loop(construct)
         elif not again:
             self.at = construct.last + 1

@@ -42,11 +42,14 @@ class Settled:
     needed  parameters that end with the run, and whose assignments stay all the same
     loops   first and last lines that the machine repeats until it is content
     kept    the same of loops with an opening line: by that, with what a round changes
+    alike   those of `kept` that are not found themselves, but written like one that was found;
+            whether it was known of that one that it begins
     """
 
     needed: frozenset[Key] = frozenset()
     loops: frozenset[tuple[int, int]] = frozenset()
     kept: Mapping[int, Changes] = field(default_factory=dict)
+    alike: Mapping[int, bool] = field(default_factory=dict)
 
 
 class Again(Exception):  # noqa: N818 - it is no error

@@ -766,6 +766,27 @@ MUTATIONS = (
         "tests/test_flow.py::test_a_table_that_has_grown_large_is_not_begun_anew_within_a_branch",
     ),
     Mutation(
+        "kept O-words: each loop that is written like another is found by a run of its own",
+        "gcxform/flow/kept_owords.py",
+        "        if others:\n            all_ =",
+        "        if False:\n            all_ =",
+        "tests/test_flow.py::test_loops_that_are_written_alike_are_found_at_once",
+    ),
+    Mutation(
+        "kept O-words: a loop that does not begin stays, as one is written like it",
+        "gcxform/flow/oword_loops.py",
+        "again = None if self.kept_words.is_found() else",
+        "again = None if self.kept_words.is_kept() else",
+        "tests/test_flow.py::test_loops_that_are_written_alike_are_found_at_once",
+    ),
+    Mutation(
+        "kept O-words: loops are alike whatever else they do",
+        "gcxform/flow/loops_alike.py",
+        "not all(map(MOVE.fullmatch, filter(None, moves)))",
+        "not all(map(MOVE.match, filter(None, moves)))",
+        "tests/test_flow.py::test_loops_that_may_be_others_are_found_one_by_one",
+    ),
+    Mutation(
         "kept O-words: a label stands twice",
         "gcxform/flow/kept_owords.py",
         "if label in self.used or any(label == name for _, name in run.subprograms.arranged.subs):",
