@@ -65,9 +65,8 @@ def found(dialect: str, chain: str, share: int) -> tuple[corpus.Outcome, ...]:
 
 def together(*words: object) -> object:
     """Return the parameters of tests that one process runs: of GRBL, all, to be counted once."""
-    group = pytest.mark.xdist_group(
-        "-".join(map(str, ("bars", *words)[: 2 if words[0] == "grbl" else 3]))
-    )
+    shared = words[:1] if words[0] == "grbl" else words[:2]
+    group = pytest.mark.xdist_group("-".join(("bars", *map(str, shared))))
     return pytest.param(*words, marks=group, id="-".join(map(str, words)))
 
 

@@ -96,7 +96,6 @@ def test_compensation_does_not_begin_again_without_a_move(
     assert done(again.replace("G4 P1", "X-5"))
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("size", [1, 20, 60, 200])
 def test_windows_make_no_difference(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = done(CONTOUR + "")

@@ -101,7 +101,6 @@ def test_all_of_it_can_be_written_out() -> None:
         absolute(structure="some")
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("size", [1, 7, 40])
 def test_windows_make_no_difference(size: int) -> None:
     parts: list[bytes] = []

@@ -136,12 +136,13 @@ def test_the_longest_line(end: bytes, last: bool) -> None:
                 b"".join(source.windows())
 
 
-def test_of_very_many_wrong_lines_that_are_alike_fifty_are_told() -> None:
-    """A line of another kind is told wherever it stands."""
-    with pytest.raises(gx.InputError) as error:
-        gx.read(b"G0 X1 X2\n" * 200 + b"G0 Y1 Y2\n" * 3, "linuxcnc").path  # noqa: B018
-    lines = [each.where.line for each in error.value.diagnostics if each.where is not None]
-    assert lines == [*range(1, 51), 201, 202, 203]
+def test_all_of_very_many_wrong_lines_are_counted(here: Path) -> None:
+    """Those that are alike are one finding, that names the first and says how many there are."""
+    (here / "bad.nc").write_bytes(b"G0 X1 X2\n" * 200 + b"G0 Y1 Y2\n" * 3 + b"M2\n")
+    found = call("check", "-f", "linuxcnc", str(here / "bad.nc"))
+    assert found.exit_code == 1
+    assert "also at lines 2, 3, 4, 5, 6 (194 more)" in found.output
+    assert "2 findings at 203 lines" in found.output
 
 
 def test_a_line_of_megabytes(here: Path) -> None:

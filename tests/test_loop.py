@@ -45,7 +45,7 @@ BEAMS = 2e-4  # rad
 TOLERANCE, DECIMALS = 0.0005, 5
 ROUNDING = 0.5 * 10**-DECIMALS * math.sqrt(3)
 SQUARE = np.array([[0, 0, 0], [-31e-6, 0, 0], [24e-6, -42e-6, 0]])  # EXY, EXZ, EYZ slopes
-LOOKED_AT = 4  # points on each command of what is compensated
+LOOKED_AT = 6  # points on each command of what is compensated
 SEEDS = range(12)
 NEGLIGIBLE = 2e-7  # rad
 

@@ -121,7 +121,6 @@ def test_each_move_is_made_in_the_path_mode_of_the_cycle(name: str) -> None:
     assert now == was
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("name", PROGRAMS)
 @pytest.mark.parametrize("size", [1, 40, 1 << 19])
 def test_windows_do_not_matter(name: str, size: int) -> None:

@@ -172,7 +172,6 @@ def test_a_wrong_pass_is_caught(name: str, alone: bool, monkeypatch: pytest.Monk
     assert error.value.diagnostics[0].code in (wanted if alone else ("GX233", "GX506"))
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("window", [1, 20, 40, 80])
 def test_a_fault_is_caught_across_windows(window: int, monkeypatch: pytest.MonkeyPatch) -> None:
     def change(path: gx.Toolpath) -> gx.Toolpath:

@@ -250,7 +250,6 @@ def test_rounded_angles_are_made_good(tmp_path, mode):
     assert worst <= TOLERANCE + ROUNDED + ROOM
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("size", [1, 60, 400, 2000])
 @pytest.mark.parametrize("mode", MODES)
 def test_windows_of_any_size_are_alike(tmp_path, mode, size):

@@ -18,7 +18,6 @@ from gcxform.pipeline.run import Run
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source
 
-pytestmark = pytest.mark.usefixtures("one_process")
 CONTROL = '[control]\ntip-on = "M428"\ntip-off = "M429"\n'
 NUTATING = '[control]\ntip-on = "M429"\ntip-off = "M428"\n'
 LINUXCNC = default_registry().dialect("linuxcnc")
@@ -100,6 +99,7 @@ def test_windows_of_any_size_are_alike(tmp_path, seed, size):
     assert b"".join(parts) == step.run(program).text
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("seed", some(12))
 @pytest.mark.parametrize("size", [1, 0])
 def test_each_code_counts(tmp_path, seed, size):
@@ -145,6 +145,7 @@ def anyhow(rng):
     return [*lines, "M2"], wrong, plain
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("seed", some(60))
 def test_a_model_that_reads_line_by_line_agrees(tmp_path, seed):
     rng = np.random.default_rng(seed)
@@ -200,6 +201,7 @@ def sections(seed):
     return [*lines, "M2"], {line + (line >= 4): station for line, station in stations.items()}
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("seed", some(25))
 def test_switched_with_axes_turned(tmp_path, seed):
     """Where the axes stand after each block is worked out by the matrices of scipy."""
@@ -283,6 +285,7 @@ GREAT = {
 }
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("name", GREAT)
 @pytest.mark.parametrize("size", [1, 0])
 def test_on_great_circles_all_is_tips(tmp_path, name, size):
@@ -313,6 +316,7 @@ def test_it_is_read(tmp_path, name):
     assert b"M42" not in result.text
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("name", REFUSED)
 @pytest.mark.parametrize("size", [1, 0])
 def test_it_is_refused_by_name(tmp_path, name, size):
@@ -325,6 +329,7 @@ def test_it_is_refused_by_name(tmp_path, name, size):
     assert found.where.line == line
 
 
+@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("angle", [360.0, -720.0, 540.0, 359.999, 0.001])
 @pytest.mark.parametrize("size", [1, 0])
 def test_whole_turns_are_as_none(tmp_path, angle, size):
@@ -343,6 +348,7 @@ def test_whole_turns_are_as_none(tmp_path, angle, size):
     assert b"Y" not in text[at - 1]
 
 
+@pytest.mark.usefixtures("one_process")
 def test_a_position_that_is_lost_is_not_known(tmp_path):
     """M101 may move axes; where nothing moves behind it in its window, the next one says so."""
     lines = [*WHOLE[:4], "M429", "M101", "M428", *WHOLE[4:]]
@@ -352,6 +358,7 @@ def test_a_position_that_is_lost_is_not_known(tmp_path):
             Run(step, Source.of_bytes(text_of(lines)), "on").over(Output(len, None), abs, size)
 
 
+@pytest.mark.usefixtures("one_process")
 def test_on_great_circles_a_position_that_is_lost_is_refused_at_the_switch(tmp_path):
     lines = [*WHOLE[:4], "M429", "M101", "M428", *WHOLE[4:]]
     lines = [each.replace(" C30.", "") for each in lines]

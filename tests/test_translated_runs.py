@@ -207,7 +207,6 @@ def refused(program, **options):
     return error.value.diagnostics[0]
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("size", [1, 40, 0])
 def test_what_rtcp_refuses_names_line_and_word_of_the_program(place, size):
     """It comes from a pass, far behind the reading."""

@@ -183,7 +183,6 @@ def test_a_text_tampered_with_is_refused(name: str) -> None:
         run(change)
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("name", ["the sign of a position", "M8 is missing", "another feed"])
 def test_it_is_refused_in_small_windows(name: str) -> None:
     old, new = {"t": ("Y-10", "Y10"), "M": ("M8\n", "\n"), "a": ("F300", "F301")}[name[0]]
@@ -321,7 +320,6 @@ M2
 # --- what is right passes ---
 
 
-@pytest.mark.usefixtures("one_process")
 @pytest.mark.parametrize("size", [1, 20, 1 << 19])
 @pytest.mark.parametrize(
     "chain",

@@ -19,7 +19,7 @@ from gcxform.dialect.arithmetic import Key
 from gcxform.flow.constructs import Construct, Constructs, OWord
 from gcxform.flow.execution import Execution
 from gcxform.flow.forks import HINT, Arrival, Forks, differ
-from gcxform.flow.loops_alike import alike
+from gcxform.flow.loops_alike import LoopsAlike
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
 from gcxform.flow.run_state import UNKNOWN
@@ -75,11 +75,11 @@ class Structured(Execution):
 class Kept:
     """A construct that stays.
 
-    begin    the block before which its rounds begin, and what is known there
-    begins   whether it is a `while` whose condition is known to hold at first
-    closing  the ways to the line that closes it
-    following  those to its next clause
-    exits    those behind it
+    begin           the block before which its rounds begin, and what is known there
+    holds_at_first  whether it is a `while` whose condition is known to hold at first
+    closing         the ways to the line that closes it
+    following       those to its next clause
+    exits           those behind it
     """
 
     construct: Construct
@@ -87,7 +87,7 @@ class Kept:
     depth: int
     begin: int = 0
     known: dict[Key, float] = field(default_factory=dict)
-    begins: bool = False
+    holds_at_first: bool = False
     closing: list[Arrival] = field(default_factory=list)
     following: list[Arrival] = field(default_factory=list)
     exits: list[Arrival] = field(default_factory=list)
@@ -104,6 +104,7 @@ class KeptOWords(Forks):
         self.used: set[str] = set()
         self.largest = 0  # number of a label in what was `counted`, or given to what is kept
         self.counted: Constructs | None = None
+        self.likenesses: tuple[Constructs, LoopsAlike] | None = None
 
     # --- the walk ---
 
@@ -195,7 +196,7 @@ class KeptOWords(Forks):
         """Keep a loop, from its first line."""
         run, kind = self.run, construct.kind
         kept = self._opened(construct)
-        kept.begins = kind == "while" and bool(run.truth(run.words[run.line]))
+        kept.holds_at_first = kind == "while" and bool(run.truth(run.words[run.line]))
         found = run.settled.kept.get(run.line, Changes())
         if kind == "repeat":  # its count is computed once
             self._write(kept)
@@ -244,20 +245,27 @@ class KeptOWords(Forks):
             return
         all_ = {**run.settled.kept, first: known.with_more(now)}
         needed = run.settled.needed | now.keys
-        others = {line: begins for line, begins in run.settled.alike.items() if line != first}
-        raise Again(replace(run.settled, kept=all_, needed=needed, alike=others))
+        likened = {line: held for line, held in run.settled.alike.items() if line != first}
+        raise Again(replace(run.settled, kept=all_, needed=needed, alike=likened))
 
     def _take_others(self, kept: Kept, found: Changes) -> None:
         """Take those that are written like a loop for the machine's too. Raises Again."""
         settled = self.run.settled
         if kept.construct.kind != "while" or kept.construct.lines[0] in settled.alike:
             return
-        every = self.run.subprograms.arranged.construct.values()
-        others = alike(self.run.listing, every, kept.construct) - settled.kept.keys()
+        others = self._alike().others(kept.construct.lines[0]) - settled.kept.keys()
         if others:
             all_ = {**settled.kept, **dict.fromkeys(others, found)}
-            likened = {**settled.alike, **dict.fromkeys(others, kept.begins)}
+            likened = {**settled.alike, **dict.fromkeys(others, kept.holds_at_first)}
             raise Again(replace(settled, kept=all_, alike=likened))
+
+    def _alike(self) -> LoopsAlike:
+        """Return the loops of all that has been called by how they are written."""
+        arranged = self.run.subprograms.arranged
+        if self.likenesses is None or self.likenesses[0] is not arranged:
+            every = arranged.construct.values()
+            self.likenesses = (arranged, LoopsAlike(self.run.listing, every))
+        return self.likenesses[1]
 
     def leave(self, construct: Construct, keyword: str) -> bool:
         """Leave a loop that stays, or go to its end; return whether it stays.

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
-
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.modal.meaning.meaning import Refusal
 from gcxform.modal.meaning.sorting import meaning_of
@@ -49,14 +46,6 @@ class Findings:
         """Add a finding about a piece of a line: its first column, from 0, and its end."""
         where = self.location(line, place[0] + 1, place[1] - place[0])
         self.found.append((line, diagnostic.at(where)))
-
-    def add_refusals(self, lines: Iterable[int]) -> None:
-        """Add what is wrong with the shapes of lines, of each shape for the first ones."""
-        alike: Counter[int] = Counter()
-        for line in lines:
-            alike[int(self.window.shape[line])] += 1
-            if alike[int(self.window.shape[line])] <= self.enough:
-                self.add_refusal(line)
 
     def add_refusal(self, line: int) -> None:
         """Add what is wrong with the shape of a line."""

@@ -128,7 +128,8 @@ class Lines:
         stays = {line - self.window.first_line for line in self.undecided.lines}
         wrong = [n for n in np.flatnonzero(self.flag("wrong")).tolist() if n not in stays]
         lathe = [line for line in wrong if self._refusal_code(line) == LATHE]
-        self.findings.add_refusals(lathe[:1] or wrong)  # one sign of a lathe explains all others
+        for line in lathe[:1] or wrong:  # one sign of a lathe explains all the others
+            self.findings.add_refusal(line)
         self.findings.raise_if_any()
 
     def _refusal_code(self, line: int) -> str:

@@ -787,6 +787,13 @@ MUTATIONS = (
         "tests/test_flow.py::test_loops_that_may_be_others_are_found_one_by_one",
     ),
     Mutation(
+        "kept O-words: loops in which nothing is probed are alike too",
+        "gcxform/flow/loops_alike.py",
+        "if not any(map(PROBE.match, moves)):",
+        "if False:",
+        "tests/test_flow.py::test_loops_that_may_be_others_are_found_one_by_one",
+    ),
+    Mutation(
         "kept O-words: a label stands twice",
         "gcxform/flow/kept_owords.py",
         "if label in self.used or any(label == name for _, name in run.subprograms.arranged.subs):",

@@ -9,13 +9,6 @@ OF_TREES = "tests/test_tree_shapes.py"
 
 MUTATIONS = (
     Mutation(
-        "findings: of very many wrong lines the first fifty are told, and of others none",
-        "gcxform/modal/findings.py",
-        "            alike[int(self.window.shape[line])] += 1\n",
-        "            alike[0] = alike[int(self.window.shape[line])] = alike[0] + 1\n",
-        "tests/test_hostile.py::test_of_very_many_wrong_lines_that_are_alike_fifty_are_told",
-    ),
-    Mutation(
         "trees: a number with a point is one without",
         TREES,
         '    return "#" if number.isdigit() else "," if number[0] == "." else "."\n',
@@ -205,6 +198,13 @@ MUTATIONS = (
         "lathe[:1] or wrong",
         "wrong",
         "tests/test_corpus.py::test_case[bad/gx234-lathe]",
+    ),
+    Mutation(
+        "reading: of wrong lines that are alike few are counted",
+        "gcxform/modal/lines.py",
+        "lathe[:1] or wrong",
+        "lathe[:1] or wrong[:50]",
+        "tests/test_hostile.py::test_all_of_very_many_wrong_lines_are_counted",
     ),
     Mutation(
         "reading: a parallel axis is a step of a lathe",
