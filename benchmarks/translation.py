@@ -35,7 +35,7 @@ from msgspec import structs
 import gcxform as gx
 from corpus import BESIDE, NUMBERS, OURS, Job, Outcome, counted, filled_in
 from corpus import run as run_in_own
-from gcxform.catalogue.offers import StepBefore, offers
+from gcxform.catalogue.remedies import StepBefore, offers
 from gcxform.catalogue.settings import Setting
 from gcxform.cli.check import reading_findings
 from gcxform.flow.straightened import written_out

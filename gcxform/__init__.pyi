@@ -4,9 +4,9 @@ from gcxform.api import Program as Program
 from gcxform.api import read as read
 from gcxform.api import read_model as read_model
 from gcxform.api import write as write
-from gcxform.catalogue.offers import Hint as Hint
-from gcxform.catalogue.offers import put_before as put_before
-from gcxform.catalogue.offers import ways_to_offsets as ways_to_offsets
+from gcxform.catalogue.remedies import Hint as Hint
+from gcxform.catalogue.remedies import put_before as put_before
+from gcxform.catalogue.remedies import ways_to_offsets as ways_to_offsets
 from gcxform.comparison import Comparison as Comparison
 from gcxform.comparison import Difference as Difference
 from gcxform.comparison import compare as compare
@@ -101,8 +101,8 @@ from gcxform.machine.machine import Machine as Machine
 from gcxform.machine.presets import MachinePreset as MachinePreset
 from gcxform.pipeline.pipeline import Pipeline as Pipeline
 from gcxform.pipeline.pipeline import Result as Result
+from gcxform.plugin.contributions import Later as Later
 from gcxform.plugin.hookspecs import hookimpl as hookimpl
-from gcxform.plugin.offered import Later as Later
 from gcxform.plugin.registry import Registry as Registry
 from gcxform.syntax.tree import Block as Block
 from gcxform.syntax.tree import Comment as Comment

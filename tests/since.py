@@ -29,7 +29,7 @@ from trees_kit import walk
 
 import gcxform
 from gcxform import cli
-from gcxform.plugin.offered import Offered
+from gcxform.plugin.contributions import Offered
 from gcxform.plugin.registry import default_registry
 
 ROOT = Path(__file__).parents[1]

@@ -21,7 +21,7 @@ from gcxform.machine.chain import chain_of
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.machine.text import to_toml
-from gcxform.plugin.offered import Offered
+from gcxform.plugin.contributions import Offered
 from gcxform.plugin.registry import Registry
 
 COUNT = 1000

@@ -13,7 +13,7 @@ from rtcp_kit import chain_of_kind, machine_text
 from rtcp_kit import pipeline as rtcp
 
 import gcxform as gx
-from gcxform.catalogue.offers import StepBefore, put_before, ways
+from gcxform.catalogue.remedies import StepBefore, put_before, ways
 from gcxform.catalogue.settings import ON_COMMAND_LINE, for_chain, settings
 from gcxform.cli.common.options import pipeline_options
 from gcxform.pipeline.file import SECTIONS

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from cli_kit import call, workplace
 
-from gcxform.cli.program.used import used_by
+from gcxform.cli.program.machine_needs import used_by
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source

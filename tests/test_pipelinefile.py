@@ -20,7 +20,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.file import InputSpec, OutputSpec, PipelineSpec, load
 from gcxform.pipeline.schema import schema
-from gcxform.plugin.offered import Offered
+from gcxform.plugin.contributions import Offered
 from gcxform.plugin.registry import Registry, default_registry
 
 MODEL = """format = 1

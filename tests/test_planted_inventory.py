@@ -23,7 +23,7 @@ from gcxform.flow.listing import Listing
 from gcxform.flow.lookup import Folders
 from gcxform.flow.macros import MacroB
 from gcxform.flow.owords import OWords
-from gcxform.modal.noted import Assigned
+from gcxform.modal.line_notes import Assigned
 from gcxform.modal.program_end import Frame
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry

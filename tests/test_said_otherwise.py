@@ -1,7 +1,7 @@
 """What one control has no code for is said otherwise in another, and the certificate says so.
 
 The programs are small and the results are worked out by hand from the tables of
-`gcxform/dialect/saying.py`.
+`gcxform/dialect/code_translation.py`.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ And what may not be known behind lines that stay as they stand.
 from __future__ import annotations
 
 import pytest
-from gcxform_plugins.dialects.siemens.standing import axes_of
+from gcxform_plugins.dialects.siemens.axes_of_lines import axes_of
 from gcxform_plugins.passes.absolute import Absolute
 
 import gcxform as gx

@@ -23,7 +23,7 @@ from gcxform.cli.common.several import Outcome
 from gcxform.cli.common.transform import Job
 from gcxform.cli.watching.folders import Folders, beside, file_away, moved
 from gcxform.cli.watching.loop import waker
-from gcxform.cli.watching.settling import Settling
+from gcxform.cli.watching.whole_files import Settling
 from gcxform.cli.watching.work import Told, Work
 from gcxform.diagnostics import FileError, InputError
 from gcxform.system.alone import is_being_written

@@ -17,7 +17,7 @@ import pytest
 from cli_kit import ABSOLUTE, PART, PIPELINE, call
 from test_watch import ONCE, Clock, Shop, tree
 
-from gcxform.cli.watching.settling import Settling
+from gcxform.cli.watching.whole_files import Settling
 from gcxform.cli.watching.work import Work
 
 CALLS = ("rename", "replace", "link", "unlink", "open", "mkdir", "fsync")

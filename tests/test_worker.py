@@ -21,7 +21,7 @@ from gcxform.cli.common.failures import FAILED, INTERRUPTED
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.emit.emitter import Emitter
 from gcxform.modal.interpreter import Interpreter
-from gcxform.modal.noted import Assigned
+from gcxform.modal.line_notes import Assigned
 from gcxform.proof.verify import Verifier
 from gcxform.system.records import Records
 from gcxform.system.worker import DIED, Here, Process, Relay, _may_copy, ahead, relay, worker

@@ -14,10 +14,10 @@ import tomlkit
 from cli_kit import call
 from missing_kit import filled, pasted
 
-from gcxform.catalogue.offers import Edit, Offer, StepBefore, ways
 from gcxform.catalogue.questions import questions
+from gcxform.catalogue.remedies import Edit, Offer, StepBefore, ways
 from gcxform.catalogue.settings import ON_COMMAND_LINE, Setting, for_chain
-from gcxform.cli.program.used import used_by
+from gcxform.cli.program.machine_needs import used_by
 from gcxform.contract.options import describe
 from gcxform.diagnostics import Diagnostic
 from gcxform.modal.state import Reading

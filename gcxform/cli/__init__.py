@@ -84,7 +84,7 @@ class Verbs(click.Group):
             from difflib import get_close_matches
 
             if os.path.exists(args[0]):
-                from gcxform.cli.common.door import next_steps
+                from gcxform.cli.common.first_steps import next_steps
 
                 ctx.fail(next_steps(args[0]))
             if near := get_close_matches(args[0].lower(), VERBS, n=1):

@@ -18,7 +18,7 @@ from gcxform.cli.common import options
 from gcxform.cli.common.answer import answer, asked, note_written
 from gcxform.cli.common.failures import say
 from gcxform.cli.common.progress import Progress
-from gcxform.cli.plant.doing import Batch
+from gcxform.cli.plant.batch_run import Batch
 from gcxform.cli.plant.pools import Rows, here, scheduled
 from gcxform.cli.plant.report import page
 from gcxform.cli.plant.results import KINDS, opened, write_table

@@ -14,14 +14,14 @@ from gcxform.cli import VERBS
 from gcxform.cli.common import options
 from gcxform.cli.common.answer import answer
 from gcxform.cli.common.answer import asked as document
-from gcxform.cli.common.door import guessed
 from gcxform.cli.common.failures import say, warn
+from gcxform.cli.common.first_steps import guessed
 from gcxform.cli.common.pipelines import announce
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked
-from gcxform.cli.program.asking import block, sections
-from gcxform.cli.program.asking import options as as_options
 from gcxform.cli.program.missing import STATELESS, Missing, Visit
+from gcxform.cli.program.settings_block import block, sections
+from gcxform.cli.program.settings_block import options as as_options
 from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity, UsageError

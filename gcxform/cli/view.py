@@ -15,7 +15,7 @@ from gcxform.cli.common.failures import warn
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, excluding, needed_dialect
-from gcxform.cli.program.beside import Beside
+from gcxform.cli.program.sidecars import Beside
 from gcxform.contract.passes import Pass
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry

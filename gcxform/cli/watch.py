@@ -24,7 +24,7 @@ from gcxform.cli.run import summary
 from gcxform.cli.watching.folders import Folders
 from gcxform.cli.watching.loop import waker, watch
 from gcxform.cli.watching.service import FILES, text_of
-from gcxform.cli.watching.settling import Settling
+from gcxform.cli.watching.whole_files import Settling
 from gcxform.cli.watching.work import Told, Work, document
 from gcxform.diagnostics import GcxformError, UsageError
 from gcxform.pipeline.pipeline import Pipeline

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 
-from gcxform.catalogue.offers import write_instead
+from gcxform.catalogue.remedies import write_instead
 from gcxform.diagnostics import Location, UsageError
 from gcxform.system import inputs
 from gcxform.system.inputs import UTF16, UTF16_MARKS

@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, ClassVar
 from gcxform.contract.demands import Demands
 from gcxform.contract.tip_codes import switches_of
 from gcxform.diagnostics import InputError
+from gcxform.dialect.code_translation import Saying
 from gcxform.dialect.dialect import Dialect, NumberFormat
-from gcxform.dialect.saying import Saying
 from gcxform.syntax.tree import Block
 from gcxform.toolpath.facts import Fact
 from gcxform.toolpath.path import Toolpath

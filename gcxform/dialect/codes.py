@@ -28,9 +28,9 @@ class Code:
     """One G code. `takes` are the address letters of the words that are parameters to it.
 
     `act` names what a code with Effect.FRAME does (`gcxform/modal/frames/acts.py`), what one with
-    Effect.INERT does that other controls spell otherwise (`gcxform/dialect/saying.py`), and of one
-    with Effect.CALL where it ends, as a machine file would say it. `lengths` are
-    those of the words it takes that are in the unit of the program; of a code with an act, all axis
+    Effect.INERT does that other controls spell otherwise (`gcxform/dialect/code_translation.py`),
+    and of one with Effect.CALL where it ends, as a machine file would say it. `lengths` are those
+    of the words it takes that are in the unit of the program; of a code with an act, all axis
     words.
     `after`: it acts at the end of its block, which is that of the last piece where the block is
     cut.

@@ -8,7 +8,7 @@ An axis is written where its rounded value changes, also if the source block did
 
 2. Pieces (`pieces.py`): a line is one piece, a split block several. What acts before the motion
 stands in the first, what acts after it in the last. Each piece states what differs from the modes
-that the control then has (`stated.py`).
+that the control then has (`needed_modes.py`).
 
 3. Copying (`copying.py`): a line keeps its bytes if they say to this control, in its state there,
 what the path says: same move, same modes, same end, no word missing. For arcs and G91 the start

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gcxform.catalogue.offers import either, put_before
+from gcxform.catalogue.remedies import either, put_before
 from gcxform.diagnostics import Diagnostic, InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.arcs import ArcEnds, centre_words

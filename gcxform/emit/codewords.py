@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from typing import Final, NoReturn
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
+from gcxform.dialect.code_translation import HOME
 from gcxform.dialect.codes import Code, Effect, MCode
-from gcxform.dialect.saying import HOME
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
 from gcxform.emit.fields import Key, Role

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.catalogue.offers import leave_out_block, put_before
+from gcxform.catalogue.remedies import leave_out_block, put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import EXTRUDER, LINEAR
 from gcxform.emit.converting import convertible
 from gcxform.emit.depending import Depending
 from gcxform.emit.manner import Believed, Task
+from gcxform.emit.needed_modes import Stated
 from gcxform.emit.pieces import PLACES, Pieces
 from gcxform.emit.positions import Positions, as_written
 from gcxform.emit.same_rows import SameRows
-from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.positions import Positions
 from gcxform.emit.same_rows import EXACT, SameRows
+from gcxform.modal.line_notes import BY_WAY, Unknown
 from gcxform.modal.meaning.meaning import FRAMING
-from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.system.arrays import Flags
 
 STORES = "store-home"

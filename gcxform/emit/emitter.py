@@ -13,22 +13,22 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.emit.centres import Centres
 from gcxform.emit.copying import Copying
 from gcxform.emit.expressible import left_out, nothing_left, says_more
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Believed, Manner, Task
+from gcxform.emit.needed_modes import stated_by
 from gcxform.emit.path_modes import ENDS_EXACTLY, Exactness, PathMode
 from gcxform.emit.pieces import pieces_of
 from gcxform.emit.positions import Positions, motion_kinds
 from gcxform.emit.presets import Presets
 from gcxform.emit.render import interleave
-from gcxform.emit.stated import stated_by
+from gcxform.emit.set_zeros import refuse_other_zeros
 from gcxform.emit.tapping import Taps
 from gcxform.emit.writing import Style, Writing
-from gcxform.emit.zeros_said import refuse_other_zeros
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import defines
 from gcxform.modal.meaning.meaning import Meaning

@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from gcxform.dialect.code_translation import LASTING, Saying
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import Dialect
-from gcxform.dialect.saying import LASTING, Saying
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.expressions.value import key_set, sets_number, written

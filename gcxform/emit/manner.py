@@ -10,8 +10,8 @@ from typing import NoReturn
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.dialect.code_translation import Saying
 from gcxform.dialect.dialect import INCH, LINEAR, Dialect, NumberFormat
-from gcxform.dialect.saying import Saying
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import PRESETS, Act
 from gcxform.modal.meaning.tables import NUMBER, MeaningTable

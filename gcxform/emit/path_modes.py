@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from gcxform.dialect.saying import BLEND
+from gcxform.dialect.code_translation import BLEND
 from gcxform.emit.manner import Task
 from gcxform.system.arrays import Flags, Ints
 from gcxform.system.distinct import distinct

@@ -1,6 +1,6 @@
 """Lines become pieces: one for each row of the path, one for each block that does not move.
 
-What each of them has to state is settled after that (`gcxform/emit/stated.py`).
+What each of them has to state is settled after that (`gcxform/emit/needed_modes.py`).
 """
 
 from __future__ import annotations

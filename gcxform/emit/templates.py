@@ -8,9 +8,9 @@ then a matter of whole arrays.
 
 from __future__ import annotations
 
+from gcxform.dialect.code_translation import ABORT, EXECUTED, LASTING
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import LINEAR
-from gcxform.dialect.saying import ABORT, EXECUTED, LASTING
 from gcxform.emit.codewords import CodeWords
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import (

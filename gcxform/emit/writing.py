@@ -1,9 +1,9 @@
 """Pieces to text: pieces that are written in the same way share a template, rendered as a whole.
 
 Which pieces there are is settled before (`gcxform/emit/pieces.py`), and what each has to say
-(`gcxform/emit/stated.py`). Here they are sorted by the way in which they are written, each way gets
-its template, and what a number of a template is worth is looked up in columns. What cannot be
-written as a number, or makes a block too long, is refused.
+(`gcxform/emit/needed_modes.py`). Here they are sorted by the way in which they are written, each
+way gets its template, and what a number of a template is worth is looked up in columns. What cannot
+be written as a number, or makes a block too long, is refused.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ from gcxform.emit.fields import (
     Wait,
 )
 from gcxform.emit.manner import Task
+from gcxform.emit.needed_modes import Stated
 from gcxform.emit.numbers import MOST_DECIMALS, decimals_for, decimals_of, quantise
 from gcxform.emit.pieces import Pieces
 from gcxform.emit.positions import Positions
 from gcxform.emit.presets import Presets
 from gcxform.emit.render import Renderer, groups_of
-from gcxform.emit.stated import Stated
 from gcxform.emit.tapping import Taps
 from gcxform.emit.templates import TemplateWriter
 from gcxform.modal.control_limits import without_blanks

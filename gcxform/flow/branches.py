@@ -22,9 +22,9 @@ from lark import Token
 from gcxform.dialect.arithmetic import Key
 from gcxform.flow.execution import Execution
 from gcxform.flow.forks import HINT, Arrival, Forks
+from gcxform.flow.rerun import Again
 from gcxform.flow.residual import Edit
 from gcxform.flow.run_state import UNKNOWN
-from gcxform.flow.settled import Again
 from gcxform.flow.skipped_stretches import is_still
 from gcxform.modal.expressions.value import Evaluator, settable
 from gcxform.modal.meaning.printed import prints_values

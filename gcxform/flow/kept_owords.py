@@ -22,8 +22,8 @@ from gcxform.flow.forks import HINT, Arrival, Forks, differ
 from gcxform.flow.loops_alike import LoopsAlike
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
+from gcxform.flow.rerun import Again, Changes
 from gcxform.flow.run_state import UNKNOWN
-from gcxform.flow.settled import Again, Changes
 from gcxform.flow.skipped_stretches import Effect, Join
 from gcxform.syntax.grammar import span_of
 from gcxform.syntax.tree import Statement

@@ -20,8 +20,8 @@ from gcxform.dialect.arithmetic import Arithmetic, Key, NoValueError, whole
 from gcxform.dialect.increments import coarse
 from gcxform.dialect.null import NULL, Null
 from gcxform.flow.listing import CODES_OF_CALLS, STORED_MODES, Listing
+from gcxform.flow.rerun import Again, Settled
 from gcxform.flow.residual import Edit, edited, residual
-from gcxform.flow.settled import Again, Settled
 from gcxform.flow.text import DECIMALS, decimal
 from gcxform.flow.walk import Steps
 from gcxform.modal.expressions.compiled import NO_VALUE, Compiled, Compiler

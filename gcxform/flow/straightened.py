@@ -105,7 +105,7 @@ def _executed(source: Source, dialect: type[Dialect], reading: Reading, keeps: b
     from gcxform.flow.lookup import Folders
     from gcxform.flow.macros import MacroB
     from gcxform.flow.owords import OWords
-    from gcxform.flow.settled import Again, Settled
+    from gcxform.flow.rerun import Again, Settled
     from gcxform.flow.uncalled_subprograms import kept
 
     kind: type[Execution] = OWords if dialect.flow_rule.language == "o-words" else MacroB

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from gcxform.catalogue.offers import tool_said
+from gcxform.catalogue.remedies import tool_said
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import NURBS

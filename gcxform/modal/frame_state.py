@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gcxform.catalogue.offers import SET_ANEW
+from gcxform.catalogue.remedies import SET_ANEW
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame, Matrix, Vector
 from gcxform.values import dataclass

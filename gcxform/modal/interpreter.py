@@ -22,11 +22,11 @@ from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import given_to
 from gcxform.modal.frame_state import FrameState
+from gcxform.modal.line_notes import Assigned, Unknown, WayHome
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
-from gcxform.modal.noted import Assigned, Unknown, WayHome
 from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED

@@ -9,6 +9,7 @@ import numpy as np
 from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR, Dialect
 from gcxform.modal.columns import extruded, fill
 from gcxform.modal.findings import Findings
+from gcxform.modal.line_notes import Assigned, KeptCall, Unknown
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.lathe import LATHE
 from gcxform.modal.meaning.tables import (
@@ -23,7 +24,6 @@ from gcxform.modal.meaning.tables import (
     MeaningTable,
     of_splines,
 )
-from gcxform.modal.noted import Assigned, KeptCall, Unknown
 from gcxform.modal.numbers_without_point import Pointless, why_open
 from gcxform.modal.state import CYCLE_OFF, Modes, Reading, State
 from gcxform.syntax.scan import Window

@@ -20,7 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.contract.passes import CompensationPass, Pass, resolved
 from gcxform.pipeline.chain import compensates
 from gcxform.pipeline.plan import Plan

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.contract.passes import PassContext
 from gcxform.dialect.dialect import LINEAR
 from gcxform.system.arrays import Ints

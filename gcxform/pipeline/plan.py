@@ -35,8 +35,8 @@ from gcxform.contract.own_codes import with_own_codes
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
 from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.diagnostics import Diagnostic, UsageError
+from gcxform.dialect.code_translation import Saying
 from gcxform.dialect.dialect import LINEAR, MOST_DECIMALS, ROTARY, Dialect, NumberFormat
-from gcxform.dialect.saying import Saying
 from gcxform.emit.expressible import foreign_cycles
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine

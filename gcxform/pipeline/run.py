@@ -27,9 +27,9 @@ from gcxform.pipeline.output import Output
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.reasons import changed_lines
-from gcxform.pipeline.said_in_moves import said_in_moves, settled
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
+from gcxform.pipeline.translated_moves import said_in_moves, settled
 from gcxform.pipeline.whole_cuts import undivided
 from gcxform.pipeline.written_back import SpelledOut, WrittenBack, structure_of
 from gcxform.proof.findings import Findings

@@ -68,7 +68,7 @@ class Structure:
 
     def fold(self) -> Folded | None:
         """Return the program with its structure; None where it is written out as a whole."""
-        from gcxform.emit.beside import beside
+        from gcxform.emit.definitions import beside
         from gcxform.emit.folding import WholeError, fold
 
         try:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from gcxform.machine.formats import ControlFiles
     from gcxform.machine.kinds import Kinematics
     from gcxform.machine.presets import MachinePreset
-    from gcxform.plugin.offered import Later
+    from gcxform.plugin.contributions import Later
     from gcxform.toolpath.facts import Fact
 
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import pluggy
 
-from gcxform.catalogue.offers import either
+from gcxform.catalogue.remedies import either
 from gcxform.config.toml_text import did_you_mean
 from gcxform.contract.demands import Demands
 from gcxform.contract.options import describe
@@ -30,8 +30,8 @@ from gcxform.machine.formats import TAKEN, ControlFiles, Known
 from gcxform.machine.kinds import Kinematics
 from gcxform.machine.presets import TABLES, MachinePreset
 from gcxform.plugin import hookspecs
+from gcxform.plugin.contributions import Later, Offered, Waiting
 from gcxform.plugin.distributions import Point, entry_points
-from gcxform.plugin.offered import Later, Offered, Waiting
 from gcxform.toolpath.facts import FACTS, Fact
 from gcxform.values import dataclass
 from gcxform.version import VERSION

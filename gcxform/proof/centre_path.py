@@ -30,7 +30,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.catalogue.offers import Hint, StepBefore
+from gcxform.catalogue.remedies import Hint, StepBefore
 from gcxform.contract.passes import CompensationPass, PassContext
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect

@@ -16,8 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from gcxform.contract.passes import PassContext
+from gcxform.dialect.code_translation import HOME
 from gcxform.dialect.codes import Effect
-from gcxform.dialect.saying import HOME
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import FRAMING, PRESETS
 from gcxform.modal.meaning.sorting import only_for_cycles

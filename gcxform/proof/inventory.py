@@ -17,7 +17,7 @@ from math import isnan
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.arithmetic import Key
@@ -26,8 +26,8 @@ from gcxform.flow.executed import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import KINDS, Account, Tally, kind_of, nothing_held
+from gcxform.modal.line_notes import Assigned, WayHome
 from gcxform.modal.meaning.tables import MeaningTable
-from gcxform.modal.noted import Assigned, WayHome
 from gcxform.modal.program_end import Ending
 from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines

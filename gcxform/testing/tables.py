@@ -1,7 +1,7 @@
 """Whether a dialect's tables say what they must: each is held to what controls agree on.
 
-These checks read the tables alone; `doing.py` runs programs. A message says what the table says,
-what was expected, and how to say that a control differs.
+These checks read the tables alone; `behaviour.py` runs programs. A message says what the table
+says, what was expected, and how to say that a control differs.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
+from gcxform.dialect.code_translation import SPOKEN
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.cycle_rule import Cycle
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, ROTARY, Dialect
 from gcxform.dialect.program_rules import ProgramRule
-from gcxform.dialect.saying import SPOKEN
 from gcxform.modal.frames.acts import WORDS
 from gcxform.modal.meaning.meaning import ACT_ORDER
 from gcxform.modal.meaning.tables import FAMILIES as OF_GROUP

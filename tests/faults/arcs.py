@@ -77,7 +77,7 @@ MUTATIONS = (
     ),
     Mutation(
         "arcs: the motion code of a block that is gone counts",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "pieces.leads & ~silent & (pieces.role != Role.GONE)",
         "pieces.leads & ~silent",
         ARCS,

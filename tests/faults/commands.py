@@ -135,7 +135,7 @@ MUTATIONS = (
     ),
     Mutation(
         "machine new: what called files use is not seen",
-        "gcxform/cli/program/used.py",
+        "gcxform/cli/program/machine_needs.py",
         "source = written_out(source, dialect, reading)",
         "written_out(source, dialect, reading)",
         "tests/test_machine_new.py",

@@ -137,7 +137,7 @@ MUTATIONS = (
     ),
     Mutation(
         "a feed that is not known is left out",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "        kept |= unknown\n",
         "",
         CORPUS,

@@ -41,7 +41,7 @@ def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
 MUTATIONS = (
     Mutation(
         "cutter: a tool that is only selected is asked for its radius",
-        "gcxform/cli/program/used.py",
+        "gcxform/cli/program/machine_needs.py",
         "spindle = selected if block.meaning.changes_tool else spindle",
         "spindle = selected",
         "tests/test_machine_new.py::test_the_radius_of_the_tool_in_the_spindle_is_asked_for",

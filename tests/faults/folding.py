@@ -80,7 +80,7 @@ MUTATIONS = (
         "a definition that is passed stands behind the end",
         "places = {each: walk.passed_at(each.first) for",
         "places = {each: None for",
-        "gcxform/emit/beside.py",
+        "gcxform/emit/definitions.py",
     ),
     _fold(
         "all behind an end is executed",

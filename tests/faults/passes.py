@@ -357,7 +357,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a feed mode that has changed is not stated",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         'self.mode("feed-mode", blocks.feed_mode, before, needs)',
         'self.mode("feed-mode", blocks.feed_mode, before, needs & False)',
         f"{CORPUS}[feed/to-inverse-time]",

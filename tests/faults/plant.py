@@ -51,14 +51,14 @@ MUTATIONS = (
     ),
     Mutation(
         "batch: a result of before stays where its program is refused now",
-        "gcxform/cli/plant/doing.py",
+        "gcxform/cli/plant/batch_run.py",
         "if before is not None and before.through and not row.through:",
         "if False:",
         PLANT,
     ),
     Mutation(
         "batch: what is not ours is taken away",
-        "gcxform/cli/plant/doing.py",
+        "gcxform/cli/plant/batch_run.py",
         "if Present().digest(name) == row.output_sha256:",
         "if True:",
         PLANT,

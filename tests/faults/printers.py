@@ -30,7 +30,7 @@ MUTATIONS = (
     ),
     Mutation(
         "printers: a piece of a move has no command",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "changes = moves & ((before != after) | alone)",
         "changes = moves & (before != after)",
         CASE.format("for-a-printer"),

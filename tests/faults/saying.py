@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from faults.mutation import Mutation
 
-SAYING, OWN = "gcxform/dialect/saying.py", "gcxform/emit/own_blocks.py"
+SAYING, OWN = "gcxform/dialect/code_translation.py", "gcxform/emit/own_blocks.py"
 LEFT = "tests/test_left_out_across.py::"
 LENGTHS = "tests/test_lengths_across.py::"
 HERE = "tests/test_said_otherwise.py"
@@ -14,7 +14,7 @@ ACROSS = "tests/test_corpus.py::test_case[dialects/across"
 MUTATIONS = (
     Mutation(
         "saying: splines are lines before the step that is proved by them",
-        "gcxform/pipeline/said_in_moves.py",
+        "gcxform/pipeline/translated_moves.py",
         "if done != resolved(plan.path_passes):",
         "if done > resolved(plan.path_passes):",
         "tests/test_corpus.py::test_case[splines/behind-cutter-comp]",
@@ -63,14 +63,14 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: G10 L20 of another control is as good",
-        "gcxform/emit/zeros_said.py",
+        "gcxform/emit/set_zeros.py",
         "if kind == 20 and one.g10_l20 != other.g10_l20:",
         "if kind == 20 and False:",
         f"{ACROSS}/more-offsets-set]",
     ),
     Mutation(
         "saying: P0 of G10 is the same everywhere",
-        "gcxform/emit/zeros_said.py",
+        "gcxform/emit/set_zeros.py",
         "if kind == 2 and not number > 0 and one.g10_p0 != other.g10_p0:",
         "if kind == 2 and number > 9:",
         f"{ACROSS}/zero-of-all]",
@@ -98,7 +98,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: R of G10 turns on every control",
-        "gcxform/emit/zeros_said.py",
+        "gcxform/emit/set_zeros.py",
         'if kind == 2 and takes and "R" in slots and one.g10_rotates != other.g10_rotates:',
         "if kind > 20:",
         f"{HERE}::test_a_zero_that_is_turned_is_folded_away",
@@ -175,14 +175,14 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: a way home that lets go of the length there stays one",
-        "gcxform/dialect/saying.py",
+        "gcxform/dialect/code_translation.py",
         "unknown |= called and there.g28_ends_length and not here.g28_ends_length",
         "unknown |= False",
         HERE,
     ),
     Mutation(
         "saying: ways home are moves before a step resolves compensation",
-        "gcxform/pipeline/said_in_moves.py",
+        "gcxform/pipeline/translated_moves.py",
         "    if done != resolved(plan.path_passes):",
         "    if done:",
         HERE,
@@ -217,7 +217,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: a way home is said in distances",
-        "gcxform/pipeline/said_in_moves.py",
+        "gcxform/pipeline/translated_moves.py",
         "incremental[lines] = False",
         "incremental[lines] = incremental[lines]",
         HERE,
@@ -238,7 +238,7 @@ MUTATIONS = (
     ),
     Mutation(
         "saying: G49 stands beside a move where it takes the axis words",
-        "gcxform/dialect/saying.py",
+        "gcxform/dialect/code_translation.py",
         "takes = rules[1].g49_takes_axes and not rules[0].g49_takes_axes",
         "takes = False",
         "tests/test_corpus.py::test_case[dialects/across/length-ended-for-grbl]",

@@ -89,7 +89,7 @@ FAULTS = (
     ),
     (
         "the motion code of a step from nowhere is not stated",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "(Form.PLAIN, Form.MACHINE, Form.BLIND)",
         "(Form.PLAIN, Form.MACHINE)",
         f"{CASE}[arcs/then-a-step-from-nowhere]",

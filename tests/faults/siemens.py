@@ -38,7 +38,7 @@ LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
 ANGLES = "plugins/gcxform_plugins/dialects/siemens/angles.py"
 VARIABLES = "plugins/gcxform_plugins/dialects/siemens/variables.py"
-STANDING = "plugins/gcxform_plugins/dialects/siemens/standing.py"
+STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(

@@ -160,7 +160,7 @@ MUTATIONS = (
     ),
     Mutation(
         "lines: behind G53 G0 it is taken for G1",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "(Form.PLAIN, Form.MACHINE, Form.BLIND)",
         "(Form.PLAIN, Form.BLIND)",
         STANDS,

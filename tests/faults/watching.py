@@ -7,7 +7,7 @@ from faults.mutation import Mutation
 WATCH = "tests/test_watch.py"
 FOLDERS = "gcxform/cli/watching/folders.py"
 WORK = "gcxform/cli/watching/work.py"
-SETTLING = "gcxform/cli/watching/settling.py"
+SETTLING = "gcxform/cli/watching/whole_files.py"
 
 MUTATIONS = (
     Mutation(

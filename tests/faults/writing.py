@@ -63,7 +63,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a motion code that has changed is not stated",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "changes = moves & ((before != after) | alone)",
         "changes = np.zeros(len(before), np.bool_)",
         LAWS + "::test_a_motion_code_that_no_longer_holds_is_stated",
@@ -140,7 +140,7 @@ MUTATIONS = (
     ),
     Mutation(
         "writing: a feed without a point is the same in every feed mode",
-        "gcxform/emit/stated.py",
+        "gcxform/emit/needed_modes.py",
         "return np.asarray(~self._other_mode | pointed[line])",
         "return np.ones(len(line), np.bool_)",
         CORPUS,

@@ -171,7 +171,7 @@ def _typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[D
     file = any(word == "--pipeline" or word.startswith("-p") for word in options)
     if file or FOUND in meta or (os.environ.get(ENVIRONMENT) and not chain):
         return list(diagnostics)
-    from gcxform.catalogue.offers import said_to_chain
+    from gcxform.catalogue.remedies import said_to_chain
 
     return [replace(each, hint=said_to_chain(each.hint)) for each in diagnostics]
 

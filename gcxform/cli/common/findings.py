@@ -11,9 +11,9 @@ def described(found: Diagnostic) -> dict[str, Any]:
     """Return a finding as plain values.
 
     `ways` are the ways out that its hint offers, each of which is enough; each is a list of what it
-    takes together (`gcxform.catalogue.offers`).
+    takes together (`gcxform.catalogue.remedies`).
     """
-    from gcxform.catalogue.offers import as_table, ways
+    from gcxform.catalogue.remedies import as_table, ways
 
     return {
         "code": found.code,

@@ -104,7 +104,7 @@ class Asked:
 
     def _no_pipeline(self) -> UsageError:
         """Return the error for a command line that says nothing of what is to be done."""
-        from gcxform.cli.common.door import guessed
+        from gcxform.cli.common.first_steps import guessed
 
         guess = None if self.dialect or not self.program else guessed(self.program)
         kind = guess.dialects[0] if guess else self.dialect or "DIALECT"

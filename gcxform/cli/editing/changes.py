@@ -9,8 +9,8 @@ from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from gcxform.catalogue import offers
-from gcxform.catalogue.offers import MACHINE, StepBefore, ways
+from gcxform.catalogue import remedies as offers
+from gcxform.catalogue.remedies import MACHINE, StepBefore, ways
 from gcxform.catalogue.settings import Setting
 from gcxform.cli.editing.program import Program
 from gcxform.cli.editing.shop import Found

@@ -13,7 +13,7 @@ from contextlib import suppress
 from typing import Any
 
 from gcxform.catalogue.questions import Question
-from gcxform.cli.program.asking import Notes, block, header, sections
+from gcxform.cli.program.settings_block import Notes, block, header, sections
 from gcxform.config.to_fill_in import TO_FILL_IN
 from gcxform.config.toml_text import locate_key
 from gcxform.diagnostics import Location, UsageError

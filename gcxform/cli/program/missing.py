@@ -16,7 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from gcxform.catalogue.questions import OF_THE_STATE, PIPELINE, Question, kind_of, questions
-from gcxform.cli.program.used import ANY, LENGTH_ALONE, Used, used_by
+from gcxform.cli.program.machine_needs import ANY, LENGTH_ALONE, Used, used_by
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.machine.control import inert_of, settings_of
 from gcxform.machine.machine import Machine, Tool

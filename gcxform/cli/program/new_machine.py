@@ -14,9 +14,9 @@ from gcxform.cli.common.failures import say
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.cli.common.programs import files_of, opened
 from gcxform.cli.common.request import Asked
-from gcxform.cli.program.asking import block
 from gcxform.cli.program.filled_files import with_questions
 from gcxform.cli.program.named_schemas import Kind, comment_for
+from gcxform.cli.program.settings_block import block
 from gcxform.cli.program.survey import Programs, Survey, dialect_of
 from gcxform.machine.machine import Machine
 from gcxform.pipeline.chain_text import parse_chain

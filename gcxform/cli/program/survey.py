@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from gcxform.catalogue.questions import PIPELINE, Question
+from gcxform.cli.program.machine_needs import ANY, Used
 from gcxform.cli.program.missing import Look, Visit
-from gcxform.cli.program.used import ANY, Used
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.by_itself import is_subprogram

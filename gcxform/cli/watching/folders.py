@@ -24,7 +24,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Final
 
-from gcxform.cli.watching.settling import BESIDE
+from gcxform.cli.watching.whole_files import BESIDE
 from gcxform.diagnostics import FileError, UsageError
 from gcxform.system.files import sync_folder, write_atomically
 from gcxform.values import dataclass

@@ -14,7 +14,7 @@ from pathlib import Path
 from threading import Event
 from typing import Any, Final
 
-from gcxform.cli.watching.settling import Settling
+from gcxform.cli.watching.whole_files import Settling
 from gcxform.cli.watching.work import Work
 from gcxform.diagnostics import FileError
 from gcxform.system.alone import is_there

@@ -20,7 +20,7 @@ from gcxform.cli.watching.folders import (
     file_away,
     free_name,
 )
-from gcxform.cli.watching.settling import Look
+from gcxform.cli.watching.whole_files import Look
 from gcxform.diagnostics import Diagnostic, FileError, GcxformError, render_all, shown
 from gcxform.stamps.chain import DONE
 from gcxform.values import dataclass

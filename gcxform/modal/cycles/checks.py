@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from gcxform.catalogue.offers import leave_out_block
+from gcxform.catalogue.remedies import leave_out_block
 from gcxform.dialect.cycle_rule import RESUME, Cycle, CycleRule
 from gcxform.modal.cycles.stretch import Stretch
 from gcxform.system.arrays import Flags, Floats, Ints

@@ -36,9 +36,9 @@ from gcxform.modal.expressions.value import (
     written,
 )
 from gcxform.modal.findings import Findings
+from gcxform.modal.line_notes import Assigned, Unknown
 from gcxform.modal.lines import DISTANCES, Lines
 from gcxform.modal.meaning.meaning import Meaning
-from gcxform.modal.noted import Assigned, Unknown
 from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
 from gcxform.system.arrays import Floats, Ints
 from gcxform.system.distinct import distinct, union

@@ -17,7 +17,7 @@ from gcxform.dialect.arithmetic import Arithmetic, Key
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import Functions, whole_columns
-from gcxform.modal.noted import Assigned
+from gcxform.modal.line_notes import Assigned
 from gcxform.system.arrays import Floats, Ints
 from gcxform.values import dataclass
 

@@ -15,9 +15,9 @@ from lark import Token, Tree
 
 from gcxform.dialect.arithmetic import NoValueError
 from gcxform.modal.expressions.value import Evaluator
+from gcxform.modal.line_notes import Unknown
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.meaning import Meaning
-from gcxform.modal.noted import Unknown
 from gcxform.syntax.grammar import rule_of
 from gcxform.syntax.tree import BLANKS
 

@@ -6,7 +6,7 @@ from math import isnan
 
 import numpy as np
 
-from gcxform.catalogue.offers import tool_said
+from gcxform.catalogue.remedies import tool_said
 from gcxform.modal.frame_state import NO_TOOL, FrameState, replace
 from gcxform.modal.frames.act import ActError, Asked
 

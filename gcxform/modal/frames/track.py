@@ -23,9 +23,9 @@ from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
 from gcxform.modal.frames.transforms import turned_by
+from gcxform.modal.line_notes import WayHome
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
-from gcxform.modal.noted import WayHome
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct, union

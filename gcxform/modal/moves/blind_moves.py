@@ -14,10 +14,10 @@ import numpy as np
 
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.frames.track import Track
+from gcxform.modal.line_notes import BY_WAY, Unknown
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import PROBES
 from gcxform.modal.moves.rows import Rows
-from gcxform.modal.noted import BY_WAY, Unknown
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct, one_of

@@ -12,12 +12,12 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR
 from gcxform.modal.frames.track import LEFT, Track
+from gcxform.modal.line_notes import AT, WayHome
 from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Own
 from gcxform.modal.moves.spindle_and_probe import probe
-from gcxform.modal.noted import AT, WayHome
 from gcxform.toolpath.frames import Frame
 from gcxform.toolpath.path import Form, Kind, Plane
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from gcxform.modal.columns import fill
 from gcxform.modal.findings import Findings
+from gcxform.modal.line_notes import Unknown
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.calls import computed_words
 from gcxform.modal.meaning.tables import NUMBER
-from gcxform.modal.noted import Unknown
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags
 

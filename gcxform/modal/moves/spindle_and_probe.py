@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gcxform.catalogue.offers import leave_out_block
+from gcxform.catalogue.remedies import leave_out_block
 from gcxform.dialect.dialect import INCH
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import SPATIAL, Break, Track

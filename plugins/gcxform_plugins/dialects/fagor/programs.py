@@ -19,7 +19,7 @@ from gcxform_plugins.dialects.fagor.lines import Lines
 from gcxform_plugins.dialects.fagor.places import code_of
 from gcxform_plugins.dialects.fagor.spelling import HEAD, counts, spelled
 from gcxform_plugins.dialects.fagor.structure import StructureError, code
-from gcxform_plugins.dialects.shared.keeping import KEEPABLE, KEEPS, KEPT
+from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
 HANGS = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:8|36|37|38|39)(?![0-9.])", re.IGNORECASE)
 """Codes that take the direction of the move before them, or change the moves beside them."""

@@ -17,7 +17,7 @@ from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_o
 from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
 from gcxform_plugins.dialects.heidenhain.words import goes_on
-from gcxform_plugins.dialects.shared.keeping import KEEPABLE, KEEPS, KEPT
+from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
 ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
 """Lines that hang on the direction of the move before them."""

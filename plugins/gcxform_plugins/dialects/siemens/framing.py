@@ -2,7 +2,7 @@
 
 Blocks are written in the coordinates outside of the programmable frame, so they mean the same to
 any control. To the same control by passes that keep positions nothing of this is needed: words
-stay words of the frame, and the line that sets it stays as it is (`standing.py`).
+stay words of the frame, and the line that sets it stays as it is (`axes_of_lines.py`).
 """
 
 from __future__ import annotations

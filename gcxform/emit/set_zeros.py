@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gcxform.catalogue.offers import put_before
+from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.emit.manner import Task
 from gcxform.modal.meaning.meaning import Act
