@@ -107,7 +107,7 @@ Job = tuple[Mutation | None, list[str]]  # a fault, or none, and the tests to ru
 
 def started(folder: Path, job: Job, loaded: swapping.Loaded | None) -> int:
     """Run tests on the packages in a folder, in a copy of this process; return its number."""
-    for name in (NOTICED, PASSED):
+    for name in (NOTICED, PASSED, SAID):
         (folder / name).write_text("", encoding="utf-8")
     sys.stdout.flush()
     number = os.fork()
