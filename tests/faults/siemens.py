@@ -42,6 +42,27 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: SUPA in a turned frame loses its own axis alone",
+        FRAMING,
+        "*(LINEAR if turned else ())",
+        "*(LINEAR if not turned else ())",
+        f"{CASES}[dialects/siemens/supa-in-a-turned-frame]",
+    ),
+    Mutation(
+        "siemens: a frame beside a motion code swallows it",
+        BLOCKS,
+        "words = (line.codes, line.motion, line.centres",
+        "words = (line.codes, line.centres",
+        f"{CASES}[dialects/siemens/frame-beside-a-motion]",
+    ),
+    Mutation(
+        "siemens: a pole beside an edge swallows it",
+        BLOCKS,
+        "acts = (line.changes, line.edge, line.work",
+        "acts = (line.changes, line.work",
+        f"{CASES}[dialects/siemens/pole-beside-an-edge]",
+    ),
+    Mutation(
         "siemens: AP=IC counts from zero",
         POLAR,
         "Decimal(self.polar[1]) + Decimal(by)",

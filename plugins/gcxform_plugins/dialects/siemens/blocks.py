@@ -67,14 +67,16 @@ class Blocks(Contours):
             self.refuse(message, self.any_of(line), FEED)
 
     def _made(self, line: Line) -> Iterator[str]:
-        if line.alone is not None and line.alone.name in FRAMES and not line.codes:
-            yield from self.set_frame(line)
+        framed = line.alone is not None and line.alone.name in FRAMES
+        if framed or line.pole is not None:
+            self._check_alone(line)
+            if line.pole is not None:
+                self.set_pole(line)
+            else:
+                yield from self.set_frame(line)
             return
         if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
             self.refuse("this stands in a block of its own", line.alone, "give it its own line")
-        if line.pole is not None:
-            self.set_pole(line)
-            return
         if line.dwell is not None or line.act is not None or line.cycle is not None:
             yield from self._alone(line)
             return
@@ -93,6 +95,15 @@ class Blocks(Contours):
             yield from self._holes(self.drilling)
 
     # --- lines of one thing ---
+
+    def _check_alone(self, line: Line) -> None:
+        """Refuse a frame or a pole beside what is no word of it (PM 631, F 118)."""
+        item = line.alone or (line.pole[1] if line.pole else None)
+        both = line.alone is not None and line.pole is not None
+        words = (line.codes, line.motion, line.centres, line.middles, line.feed, line.others)
+        acts = (line.changes, line.edge, line.work, line.machine, line.dwell, line.act, line.cycle)
+        if both or any(words) or line.tool or line.modal or any(act is not None for act in acts):
+            self.refuse("this stands in a block of its own", item, "give it its own line")
 
     def _alone(self, line: Line) -> Iterator[str]:
         """Yield the blocks of G4, of what follows the tip, and of a cycle at this place."""
@@ -216,7 +227,7 @@ class Blocks(Contours):
                 self.place.absolute(axis, number)
             self.place.unwound.discard(axis)
             words.append(axis + number)
-        self.place.lose("".join(line.axes))
+        self.place.lose(self.moved_inside(line.axes))
         self.place.moved = True
         codes = [*self.motion_code(line, motion), *self.distance_code(line, False)]
         return " ".join([*line.codes, *codes, *(["G53"] if words else []), *words, *rest_of(line)])

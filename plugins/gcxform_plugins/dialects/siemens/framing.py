@@ -7,7 +7,7 @@ stay words of the frame, and the line that sets it stays as it is (`axes_of_line
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 
 from gcxform_plugins.dialects.siemens.arcs import CENTRES
@@ -26,7 +26,7 @@ class Framing(Polar):
         """Take an instruction for the frame; it moves nothing. Raises PlaceError."""
         assert line.alone is not None
         name = line.alone.name
-        if line.axes.keys() - {*LINEAR} or line.named.keys() - {"RPL"} or line.feed or line.others:
+        if line.axes.keys() - {*LINEAR} or line.named.keys() - {"RPL"}:
             self.refuse(f"{name} beside what is no word of it", line.alone, "give it its own line")
         if any(way not in ("", ABSOLUTE) for way, _, _ in line.axes.values()):
             self.refuse(f"{name} in steps", line.alone, PLAIN)
@@ -84,6 +84,11 @@ class Framing(Polar):
             radius = word[0] == "R"
             words.append("R" + text_of(Decimal(word[1:]) * abs(growth)) if radius else word)
         return ({"2": "3", "3": "2"}[motion] if growth < 0 else motion), words
+
+    def moved_inside(self, axes: Iterable[str]) -> list[str]:
+        """Return the axes of the program that are elsewhere when axes of the machine have moved."""
+        turned = any(self.frame.matrix[i][k] for i in range(3) for k in range(3) if i != k)
+        return [*axes, *(LINEAR if turned else ())]
 
     @property
     def keeps_radii(self) -> bool:

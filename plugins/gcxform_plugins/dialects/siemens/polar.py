@@ -40,8 +40,7 @@ class Polar(Moves):
         """Take a pole; nothing moves. Raises InputError and PlaceError."""
         assert line.pole is not None
         code, item = line.pole
-        many = (line.codes, line.centres, line.middles, line.motion, line.feed, line.others)
-        if any(many) or line.axes.keys() - {*self.plane} or line.named.keys() - {"AP", "RP"}:
+        if line.axes.keys() - {*self.plane} or line.named.keys() - {"AP", "RP"}:
             self.refuse(f"G{code} beside what is no word of it", item, "give it its own line")
         if any(way not in ("", ABSOLUTE) for way, _, _ in line.axes.values()):
             self.refuse(f"G{code} in steps", item, WAY)
