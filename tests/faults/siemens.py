@@ -42,6 +42,20 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: CT behind a hole goes on as before it",
+        BLOCKS,
+        "hole.own_feed\n        self.along = None",
+        "hole.own_feed",
+        f"{CASES}[dialects/siemens/tangent-behind-a-hole]",
+    ),
+    Mutation(
+        "siemens: CT behind SUPA goes on as before it",
+        BLOCKS,
+        "self.place.moved = True\n        self.along = None",
+        "self.place.moved = True",
+        f"{CASES}[dialects/siemens/tangent-behind-supa]",
+    ),
+    Mutation(
         "siemens: SUPA in a turned frame loses its own axis alone",
         FRAMING,
         "*(LINEAR if turned else ())",

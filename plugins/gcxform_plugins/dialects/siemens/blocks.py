@@ -159,6 +159,7 @@ class Blocks(Contours):
             words += [f"F{feed}"] if feed else []
             yield " ".join([*([] if k else self.distance_code(Line(), False)), *words])
         self.said, self.feed_open = "0", hole.own_feed
+        self.along = None
 
     # --- tools ---
 
@@ -229,5 +230,6 @@ class Blocks(Contours):
             words.append(axis + number)
         self.place.lose(self.moved_inside(line.axes))
         self.place.moved = True
+        self.along = None
         codes = [*self.motion_code(line, motion), *self.distance_code(line, False)]
         return " ".join([*line.codes, *codes, *(["G53"] if words else []), *words, *rest_of(line)])
