@@ -38,6 +38,7 @@ LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
 ANGLES = "plugins/gcxform_plugins/dialects/siemens/angles.py"
 VARIABLES = "plugins/gcxform_plugins/dialects/siemens/variables.py"
+LINES_BESIDE = "tests/test_siemens_lines.py"
 STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
@@ -65,15 +66,15 @@ MUTATIONS = (
     Mutation(
         "siemens: a frame beside a motion code swallows it",
         BLOCKS,
-        "words = (line.codes, line.motion, line.centres",
-        "words = (line.codes, line.centres",
+        'else "alone", "axes", "named"',
+        'else "alone", "axes", "named", "motion"',
         f"{CASES}[dialects/siemens/frame-beside-a-motion]",
     ),
     Mutation(
         "siemens: a pole beside an edge swallows it",
         BLOCKS,
-        "acts = (line.changes, line.edge, line.work",
-        "acts = (line.changes, line.work",
+        'else "alone", "axes", "named"',
+        'else "alone", "axes", "named", "edge"',
         f"{CASES}[dialects/siemens/pole-beside-an-edge]",
     ),
     Mutation(
@@ -896,5 +897,47 @@ MUTATIONS = (
         "            return [*words_of(self.tree_of(text), text)]\n",
         "            return items\n",
         f"{CASES}[dialects/siemens/stands-by-all-its-words]",
+    ),
+    Mutation(
+        "siemens: a tool change beside a dwell is dropped",
+        BLOCKS,
+        'if not line.says_only(name, "feed"):',
+        'if not line.says_only(name, "feed", "changes"):',
+        f"{LINES_BESIDE}::test_words_beside_what_stands_alone_are_not_dropped",
+    ),
+    Mutation(
+        "siemens: CT goes on from before a hole",
+        BLOCKS,
+        "hole.own_feed\n        self.along = None\n",
+        "hole.own_feed\n",
+        f"{LINES_BESIDE}::test_a_cycle_leaves_no_direction",
+    ),
+    Mutation(
+        "siemens: two comparisons with AND between are read in one way",
+        EXPRESSIONS,
+        "map(_upper, [*_flat(node)][1::2])",
+        "map(_upper, node.children[1::2])",
+        f"{LINES_BESIDE}::test_comparisons_without_brackets_are_read_in_one_way_or_not",
+    ),
+    Mutation(
+        "siemens: R1 and R[1] are two variables",
+        VARIABLES,
+        "if any(computed) and all(",
+        "if all(computed) and all(",
+        f"{LINES_BESIDE}::test_what_a_line_sets_none_of_its_words_reads",
+    ),
+    Mutation(
+        "siemens: CASE compares what is not whole",
+        DECIDING,
+        "if value != int(value):",
+        "if False:",
+        f"{LINES_BESIDE}::test_a_case_is_a_whole_number",
+    ),
+    Mutation(
+        "siemens: a dwell of ten seconds is a mode",
+        CYCLES,
+        'if k == AMODE else ("", "0") for k',
+        'if k >= 0 else ("", "0") for k',
+        f"{LINES_BESIDE}::test_seconds_are_said_in_one_place",
     ),
 )

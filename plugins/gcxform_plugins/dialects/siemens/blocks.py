@@ -99,18 +99,14 @@ class Blocks(Contours):
     def _check_alone(self, line: Line) -> None:
         """Refuse a frame or a pole beside what is no word of it (PM 631, F 118)."""
         item = line.alone or (line.pole[1] if line.pole else None)
-        both = line.alone is not None and line.pole is not None
-        words = (line.codes, line.motion, line.centres, line.middles, line.feed, line.others)
-        acts = (line.changes, line.edge, line.work, line.machine, line.dwell, line.act, line.cycle)
-        if both or any(words) or line.tool or line.modal or any(act is not None for act in acts):
+        if not line.says_only("pole" if line.alone is None else "alone", "axes", "named"):
             self.refuse("this stands in a block of its own", item, "give it its own line")
 
     def _alone(self, line: Line) -> Iterator[str]:
         """Yield the blocks of G4, of what follows the tip, and of a cycle at this place."""
         item = line.dwell or line.cycle or (line.act[1] if line.act else None)
-        rest = (line.axes, line.centres, line.named, line.middles, line.others, line.motion)
-        many = sum(x is not None for x in (line.dwell, line.cycle, line.act)) > 1
-        if many or any(rest) or line.codes or line.tool or line.edge or line.machine:
+        name = next(name for name in ("dwell", "cycle", "act") if getattr(line, name) is not None)
+        if not line.says_only(name, "feed"):
             self.refuse("this stands in a block of its own", item, "give it its own line")
         if line.dwell is not None:
             if not line.feed:
@@ -174,7 +170,7 @@ class Blocks(Contours):
                 message = "M6 beside a move, or while TRAORI is in force"
                 self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
             yield f"T{line.tool} M6" if line.tool else "M6"
-            self.tool, self.changed, self.edge = self.waiting, True, None
+            self.tool, self.changed, self.edge, self.along = self.waiting, True, None, None
             moves = self.dialect.m_codes[CHANGE].loses_position
             if moves and CHANGE not in self.reading.inert_m:
                 self.place.lose(LINEAR + ROTARY)

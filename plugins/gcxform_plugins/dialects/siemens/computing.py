@@ -109,7 +109,7 @@ class Computing(Deciding):
     def _straight(self, tree: Node, text: str) -> str:
         """Return a line of plain words for one that computes; nothing where it decides."""
         edits: list[tuple[int, int, str]] = []
-        set_names: set[str] = set()
+        set_names = {*self._names_set(tree)}
         for node in tree.children:
             assert isinstance(node, Tree)
             rule = rule_of(node)

@@ -15,7 +15,9 @@ CALLED = re.compile(r"([A-Z_]\w*)[ \t]*\((.*)\)", re.IGNORECASE | re.DOTALL)
 PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
 SECONDS = "10"
-"""The last argument of drilling cycles where dwells are in seconds, and depths as ever."""
+"""AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
+AMODE = 2
+"""Its place behind the last argument of the hole itself."""
 QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
 NO_RETRACT, PLAIN_MODE = "0", re.compile(r"[0-9]*")
 
@@ -92,8 +94,9 @@ def _depth(absolute: str, below: str, level: Decimal, *names: str) -> str:
 
 
 def _nothing_more(rest: Sequence[str]) -> None:
-    """Refuse arguments behind those that are read. Raises CycleError."""
-    if any(other not in ("", "0") for other in rest[:-1]) or (rest and rest[-1] not in ALIKE):
+    """Refuse arguments behind those that are read: GMODE, DMODE, AMODE. Raises CycleError."""
+    alike = [("", "0", SECONDS) if k == AMODE else ("", "0") for k in range(len(rest))]
+    if any(other not in said for other, said in zip(rest, alike, strict=True)):
         raise CycleError("an argument behind the depth is not read")
 
 
@@ -131,7 +134,8 @@ def _pecked(rest: list[str], at: Levels) -> Steps:
     of 0 mean is in machine data.
     """
     first, by, less, dwell, above, slower, kind, axn, _, back, last, near = [*rest, *[""] * 12][:12]
-    _nothing_more([axn, *rest[12:]] if rest[12:] else [axn, ""])
+    _nothing_more([axn])
+    _nothing_more(rest[12:])
     if any(text and Decimal(_number(text, what)) for text, what in ((less, "DAM"), (by, "FDPR"))):
         raise CycleError("DAM or FDPR changes how deep a stroke is")
     if slower and Decimal(_number(slower, "FRF")) not in (0, 1):
@@ -224,7 +228,6 @@ def circle(given: Sequence[str]) -> list[tuple[Decimal, Decimal]]:
 
 
 MOST = 9999  # holes of a pattern
-ALIKE = ("", "0", SECONDS)
 
 
 def _number(text: str, what: str) -> str:

@@ -199,15 +199,22 @@ class Deciding(Variables):
 
     def _case(self, node: Node) -> None:
         parts = [c for c in node.children if not (isinstance(c, Token) and c.type.endswith("CASE"))]
-        value = self.worth.number(parts[0])
+        value = self._whole(parts[0])
         for each in parts[1:]:
             if isinstance(each, Tree) and rule_of(each) == "choice":
-                if self.worth.number(each.children[0]) == value:
+                if self._whole(each.children[0]) == value:
                     self._jump(str(each.children[1]), each.children[2])
                     return
             elif isinstance(each, Tree) and rule_of(each) == "destination":
                 self._jump(str(parts[parts.index(each) - 1]), each)
                 return
+
+    def _whole(self, node: Any) -> float:
+        """Return a number that CASE compares. Raises NoValueError for what it would round."""
+        value = self.worth.number(node)
+        if value != int(value):
+            raise v.NoValueError("CASE of a number that is not whole", "write ROUND(...)")
+        return value
 
     def _return(self, node: Node) -> None:
         """Leave the program that nothing has called."""

@@ -37,6 +37,8 @@ kept as it stands, with all that is lost behind it.
 | G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |
 | G500, G53 | leave basic frames in force, which only the control knows: refused | K2 741 |
 | SUPA, G153 | in machine coordinates; only with D0: a tool length may stay | ISO 3-42 |
+| SUPA in a frame that turns | where X, Y and Z are in it is not known then | |
+| other words beside TRANS, G111, G4, a cycle | refused | |
 | TRANS, ROT, SCALE, MIRROR | a new programmable frame, in place of the one before | 808D 56 |
 | ATRANS, AROT, ASCALE, AMIRROR | in the frame that is in force: on its right | PM 631, K2 2-67 |
 | ROT X Y Z, RPL= | about Z, new Y, new X (RPY); about the axis across the plane | PM 309 |
@@ -81,7 +83,7 @@ kept as it stands, with all that is lost behind it.
 | REAL to INT | as ROUND: halves up; negative halves are refused | JP 54 |
 | priorities | of PM 444: comparisons bind last, behind AND, XOR and OR | PM 444 |
 | `==`, `>` ... | to 1e-12 of the values; what differs by less has no order (MD10280) | JA 1-23 |
-| AND beside a comparison, no brackets | refused where the usual reading differs | PM 444 |
+| AND beside comparisons, no brackets | refused where the usual reading differs | PM 444 |
 | DIV, TRUNC, ROUNDUP | cut, cut, up also below zero | PM 443, JA 1-70 |
 | MOD | of positive whole numbers; others are refused | [K] |
 | STRLEN SUBSTR INDEX RINDEX NUMBER ISNUMBER TOUPPER TOLOWER | from 0; -1: not there | JP 74 |
@@ -89,7 +91,7 @@ kept as it stands, with all that is lost behind it.
 | IF ELSE, WHILE, REPEAT UNTIL, LOOP | as structures, up to the line that ends them | PM |
 | FOR | up by one; its variable is lost behind it | [K] |
 | GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
-| CASE OF DEFAULT | by value; on without a DEFAULT | PM |
+| CASE OF DEFAULT | by whole numbers, others are refused; on without a DEFAULT | PM |
 | a variable set and read in a word of one block | refused | [K] |
 | GOTOS, REPEAT of a label, RET with a label | refused | [K] |
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |

@@ -22,6 +22,7 @@ from gcxform_plugins.dialects.siemens.texts import FUNCTIONS, TRUTHS, UNTOLD, of
 PARAMETER = re.compile(r"R[0-9]+")
 CONSTANTS = {"TRUE": 1.0, "FALSE": 0.0}
 LOGIC = frozenset(("conjunction", "disjunction", "exclusive"))
+LOGIC_WORDS = frozenset(("AND", "OR", "XOR"))
 COMPARED = frozenset(("==", "<>", ">=", "<=", ">", "<"))
 BY_THE_MANUAL = (COMPARED, frozenset(("OR",)), frozenset(("XOR",)), frozenset(("AND",)))
 AS_USUAL = (*BY_THE_MANUAL[1:], COMPARED)
@@ -91,9 +92,7 @@ class Expressions(v.Evaluator):
             return self._function(str(children[0]).upper(), children[1].children)
         if rule == "joined":
             return self._told(children[0]) + self._told(children[2])
-        if rule == "expression" and any(
-            _rule(each) in LOGIC for each in children if _is_tree(each)
-        ):
+        if rule == "expression" and not LOGIC_WORDS.isdisjoint(map(_upper, [*_flat(node)][1::2])):
             return self._both_ways(node)
         return self._binary(*children)
 
@@ -104,9 +103,7 @@ class Expressions(v.Evaluator):
         other way round has to get the same. Raises NoValueError where he does not.
         """
         flat = [*_flat(node)]
-        values: list[Any] = [
-            self.of(e) if k % 2 == 0 else str(e).upper() for k, e in enumerate(flat)
-        ]
+        values: list[Any] = [self.of(e) if k % 2 == 0 else _upper(e) for k, e in enumerate(flat)]
         found = self._joined(values, BY_THE_MANUAL)
         if found != self._joined(values, AS_USUAL):
             message = "a comparison beside AND, OR or XOR: by the manual these bind before it"
@@ -252,6 +249,10 @@ class Expressions(v.Evaluator):
 
 def _rule(node: Tree[Token]) -> str:
     return str(node.data).rsplit("__", 1)[-1]
+
+
+def _upper(token: Any) -> str:
+    return str(token).upper()
 
 
 def _is_tree(node: Any) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import gcxform as gx
 
@@ -50,10 +50,19 @@ class Line:
     work: tuple[str, gx.Item] | None = None
     machine: gx.Item | None = None
     dwell: gx.Item | None = None
-    speed: bool = False
     act: tuple[str, gx.Item] | None = None
     cycle: gx.Item | None = None
     alone: gx.Item | None = None
     modal: gx.Item | None = None
     pole: tuple[str, gx.Item] | None = None
     groups: set[str] = field(default_factory=set)
+
+    def says_only(self, *names: str) -> bool:
+        """Whether nothing stands in a line but what fields of these names hold, and its number."""
+        others = (f.name for f in fields(self) if f.name not in {*names, *OF_OTHERS})
+        return not any(getattr(self, name) not in NOTHING for name in others)
+
+
+OF_OTHERS = frozenset(("number", "groups", "onwards", "edge_number"))
+"""What says of other fields how they were said."""
+NOTHING: tuple[object, ...] = ("", None, [], {})

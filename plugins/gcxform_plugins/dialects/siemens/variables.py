@@ -89,18 +89,25 @@ class Variables(Blocks):
         index: Any = target.children[1] if len(target.children) > 1 else None
         if self._is_variable(name, index):
             self._set(name, index, value)
-            set_names.add(name)
             yield (*span_of(node), "")
             return
         if index is not None or not WORDS.fullmatch(name):
             self.refuse(f"{name} is neither a variable of the program nor a word that is read")
-        if set_names & set(names_in(value)):
+        if may_be_alike(set_names, {*names_in(value)}):
             self.refuse(
                 "a variable is set, and read in a word of the same block", None, "part them"
             )
         way, number = self._worded(quickly(value) if name == "M" else value)
         text = f"{way}({number})" if way else number
         yield (*span_of(node), f" {name}={text} ")
+
+    def _names_set(self, tree: Node) -> Iterator[str]:
+        """Yield the names of variables that a line sets, in capitals."""
+        nodes: list[Any] = tree.children
+        for target in (node.children[0] for node in nodes if rule_of(node) == "assignment"):
+            name, index = str(target.children[0]).upper(), target.children[1:]
+            if self._is_variable(name, index[0] if index else None):
+                yield name
 
     def _is_variable(self, name: str, index: Node | None) -> bool:
         return (
@@ -268,6 +275,15 @@ class Variables(Blocks):
             cell.lose()
             if any(isinstance(c, Tree) and rule_of(c) == "bounds" for c in each.children):
                 del self.levels[-1][name]
+
+
+def may_be_alike(one: set[str], other: set[str]) -> bool:
+    """Whether names may name a variable of others: R1 is R01, and may be R[R2]."""
+    numbers = [{int(n[1:]) for n in names if PARAMETER.fullmatch(n)} for names in (one, other)]
+    computed = ["R" in names for names in (one, other)]
+    if any(computed) and all(map(any, zip(computed, numbers, strict=True))):
+        return True
+    return bool(numbers[0] & numbers[1] or one & other)
 
 
 def quickly(value: Any) -> Any:
