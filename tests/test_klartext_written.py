@@ -33,6 +33,29 @@ def written(text, step=None, **told):
 
 
 @pytest.mark.parametrize(
+    ("begins", "last"),
+    [
+        ("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "PLANE RESET STAY"),
+        ("CYCL DEF 11.1 SCL 0.5", "CYCL DEF 11.1 SCL 1"),
+        ("M144", "M145"),
+        ("M114", "M115"),
+    ],
+)
+def test_steps_behind_what_ends_a_kept_function_stay(begins, last):
+    head = (begins, "L X+10 Y+0 Z+3 F100", last)
+    text = program(*head, "L IX+1 F100")
+    assert written(text)[0] == text
+    text = program(*head, "L X+5 Y+0 Z+3 F100", "L IX+1")
+    assert written(text)[0] == text.replace("L IX+1", "L X+6")
+
+
+@pytest.mark.parametrize("last", ["PLANE RESET STAY", "CYCL DEF 11.1 SCL 1", "M145"])
+def test_what_ends_nothing_changes_nothing(last):
+    text = program("L X+10 Y+0 Z+3 F100", last, "L IX+1")
+    assert written(text)[0] == text.replace("L IX+1", "L X+11")
+
+
+@pytest.mark.parametrize(
     ("formula", "value"),
     [
         ("5*3+2*10", 35.0),

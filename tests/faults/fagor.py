@@ -385,4 +385,11 @@ MUTATIONS = (
         "column=start + 1)",
         RUNS,
     ),
+    Mutation(
+        "fagor: a pole is as many inches away as it was mm",
+        POLAR,
+        '{"G53", "G70", "G71", "G92"',
+        '{"G53", "G92"',
+        "tests/test_corpus.py::test_case[dialects/fagor/pole-of-another-unit]",
+    ),
 )

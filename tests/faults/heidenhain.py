@@ -870,4 +870,18 @@ MUTATIONS = (
         'rest += ""',
         f"{FREE_TESTS}::test_what_has_more_solutions_or_none_is_refused",
     ),
+    Mutation(
+        "klartext: the end of a kept function changes no coordinates",
+        "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
+        '        if self.kept_lines:\n            self.refuse(f"{what} ends',
+        '        if self.kept_lines and False:\n            self.refuse(f"{what} ends',
+        f"{WRITTEN}::test_steps_behind_what_ends_a_kept_function_stay",
+    ),
+    Mutation(
+        "klartext: M145 leaves coordinates as they are",
+        "plugins/gcxform_plugins/dialects/heidenhain/positioning.py",
+        "MOVES_ZERO = frozenset({115, 145})",
+        "MOVES_ZERO = frozenset({115})",
+        f"{WRITTEN}::test_steps_behind_what_ends_a_kept_function_stay",
+    ),
 )

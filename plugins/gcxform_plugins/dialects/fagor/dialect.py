@@ -38,6 +38,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | start and end radius | may differ by 0.01 mm, the usual value of a parameter |
 | R | an arc of less than half a circle, of more where it is negative |
 | polar words R, Q | about the part zero, or G30 I J; read in G17 [M 68, V02 101] |
+| G70, G71 behind G30 | where the pole is then is not known |
 | Q420 | is Q60 [M 68]; in G91, and with an I, both count on from the last polar place |
 | one of them left out | is that of the last move, which must have been a polar one [V02 101] |
 | an arc with Q | about its I J, or about the pole; Q360 in G91 is a circle [V02 101] |

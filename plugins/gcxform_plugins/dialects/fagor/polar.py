@@ -15,7 +15,7 @@ from gcxform_plugins.dialects.fagor import tables
 from gcxform_plugins.dialects.fagor.blocks import PLANES, Blocks
 from gcxform_plugins.dialects.fagor.places import code_of, quiet
 
-SHIFTS = tables.WORK | {"G53", "G92", "G158", "G159"}
+SHIFTS = tables.WORK | {"G53", "G70", "G71", "G92", "G158", "G159"}
 ARCS = frozenset(("G2", "G3"))
 TURN = 360.0
 NEAR = 1e-9

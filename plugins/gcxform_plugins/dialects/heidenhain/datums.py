@@ -160,6 +160,7 @@ class Datums(Parameters):
         found = SCALE.fullmatch(text)
         if part == 1 and (found is None or float(plain(found[1])) != 1.0):
             self.refuse("a scale: whether it is of all axes is a parameter of the machine", item)
+        self.ends("a scale of 1", item)
         return []
 
     def _lose_frame(self, axes: str) -> None:

@@ -109,7 +109,8 @@ class Klartext(Cycles):
         read = self.texts.get(word[0])
         if read is not None:
             return read(item)
-        if name.split() == ["PLANE", "RESET", "STAY"]:  # no plane is read that it could end
+        if name.split() == ["PLANE", "RESET", "STAY"]:
+            self.ends("PLANE RESET", item)
             return []
         self.refuse(f"{name.strip()[:40]} is not resolved", item)
 

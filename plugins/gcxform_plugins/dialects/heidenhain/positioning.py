@@ -18,6 +18,8 @@ MACHINE = 91
 NEVER_BESIDE = (6, 91, 128, 129)
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
 """Rounding of corners, messages, and M functions that cancel what is refused here."""
+MOVES_ZERO = frozenset({115, 145})
+"""Those of them behind which coordinates are others, if what they cancel has been."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
 WHY = {
     89: "it calls a cycle behind each block",
@@ -147,7 +149,10 @@ class Saying(Words):
             said.changes |= code == 6
         elif code in (126, 127):
             self.shortest = code == 126
-        elif code not in SILENT:
+        elif code in SILENT:
+            if code in MOVES_ZERO:
+                self.ends(f"M{code}", item)
+        else:
             said.before += self._at_start(code, item)
         return code
 

@@ -100,6 +100,11 @@ class Programs(Runs):
 
     # --- what is kept ---
 
+    def ends(self, what: str, item: gx.Item) -> None:
+        """Keep what may end a function of a line that is kept: coordinates are others behind it."""
+        if self.kept_lines:
+            self.refuse(f"{what} ends what may have been kept", item)
+
     def _keep_rest(self, why: str) -> None:
         """Keep all that follows; lines before may then be executed again."""
         self.rest_kept = self.tied = why

@@ -130,6 +130,9 @@ class Words(gx.Translator):
         axis = name[1:]
         return axis, exact(self.stands_at(axis, item) + Decimal(number))
 
+    def ends(self, what: str, item: gx.Item) -> None:
+        """Take what ends a function that is refused here, so that it ends nothing."""
+
     def refuse_beside(self, what: str, item: gx.Item) -> None:
         """Refuse what is not read while the tool is beside the contour. Raises InputError."""
         if self.side:
