@@ -200,3 +200,10 @@ def test_behind_a_call_that_is_kept_the_modes_are_said_before_anything_changes()
     lines = ["LL NOWHERE", "X5 Y5 Z5", "X2I", "G1 G90 X2 Y2 Z2", "X2I"]
     text, _ = written(HEAD + "\n".join([*lines, "M30"]) + "\n")
     assert text.splitlines()[2:-1] == [*lines[:4], "X4"]
+
+
+@pytest.mark.parametrize("work", ["G54", "G159=1"])
+def test_steps_behind_a_work_offset_stay(work):
+    text = f"G71 G17 G90 G94 G54\nG1 X1 Y1 F100\nG92 X5\nX5 Y5\n{work}\nX1I\nX3\nX1I\n"
+    made, _ = written(text)
+    assert made == text.removesuffix("X1I\n") + "X4\n"

@@ -48,6 +48,12 @@ def test_a_spindle_moves_no_linear_axis(said):
     assert own(f"{said}\nX=IC(1)\n") == f"{said}\nX=2\n"
 
 
+@pytest.mark.parametrize("said", ["TOFFL=2", "TOFF=2", "TOFFL=2*1"])
+def test_what_adds_to_a_length_loses_where_the_tool_is(said):
+    assert own(f"{said}\nZ=IC(1)\n") == f"{said}\nZ=IC(1)\n"
+    assert own(f"{said}\nZ5\nZ=IC(1)\n") == f"{said}\nZ5\nZ=6\n"
+
+
 def test_a_spindle_may_be_a_rotary_axis():
     turned = gx.Item("named", ("SPOS",), ("90",), (0, 0))
     assert axes_of([turned], frozenset(), frozenset()) == "ABC"

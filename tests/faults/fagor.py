@@ -392,4 +392,11 @@ MUTATIONS = (
         '{"G53", "G92"',
         "tests/test_corpus.py::test_case[dialects/fagor/pole-of-another-unit]",
     ),
+    Mutation(
+        "fagor: behind a work offset axes are where they were",
+        "plugins/gcxform_plugins/dialects/fagor/programs.py",
+        'if shifted or "M6" in codes',
+        'if "M6" in codes',
+        "tests/test_fagor_flow.py::test_steps_behind_a_work_offset_stay",
+    ),
 )

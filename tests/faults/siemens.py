@@ -940,4 +940,11 @@ MUTATIONS = (
         'if k >= 0 else ("", "0") for k',
         f"{LINES_BESIDE}::test_seconds_are_said_in_one_place",
     ),
+    Mutation(
+        "siemens: what adds to the length of the tool loses nothing",
+        STANDING,
+        "name in POLAR | LENGTHS",
+        "name in POLAR",
+        "tests/test_siemens_told.py::test_what_adds_to_a_length_loses_where_the_tool_is",
+    ),
 )

@@ -42,6 +42,7 @@ CALLS = re.compile(
     r"(?<![A-Z0-9_#$.])(?:LL?(?![A-Z])|#P?CALL|#MCALL|#MDOFF|#EXEC|#EXBLK)", re.IGNORECASE
 )
 LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|30)(?![0-9])", re.I)
+ZEROS = tables.WORK | {"G159"}
 STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
 STATE = (
     *("bars", "incremental", "following", "taken_away", "corners", "kinematics", "tool", "edge"),
@@ -237,8 +238,9 @@ class Programs(Flow):
     def _relative(self, items: Sequence[gx.Item], words: list[str]) -> tuple[list[str], list[str]]:
         """Return the words of a block; steps from where an axis may stand anywhere are refused."""
         if self.reading.stays:
-            changes = any(code_of(item) == "M6" for item in items)
-            self.gone = set(self.named) if changes else self.gone
+            codes = {code_of(item) for item in items}
+            shifted = codes & ZEROS  # it may end G92 and its like as well, which are kept
+            self.gone = set(self.named) if shifted or "M6" in codes else self.gone
             for item in items:
                 steps = item.kind == "incremental" or (self.incremental and item.kind == "word")
                 if steps and item.name in self.gone:

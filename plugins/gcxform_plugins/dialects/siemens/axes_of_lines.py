@@ -32,6 +32,8 @@ ENDS_OF_SPLINES = frozenset(("BAUTO", "BNAT", "BTAN", "EAUTO", "ENAT", "ETAN"))
 OTHER = "other"
 """A motion that is none of the blocks'."""
 POLAR = frozenset(("AP", "RP", "ANG"))
+LENGTHS = frozenset(("TOFF", "TOFFL"))
+"""What adds to the length of the tool: a step behind it adds that, or not (SD42442)."""
 MOVING = frozenset(("POS", "POSA", "POSP", "SPOSA", "LEAD", "TILT", "THETA"))
 
 
@@ -83,7 +85,7 @@ def _of_item(item: gx.Item, quiet: frozenset[str], m_codes: frozenset[int]) -> s
     if kind in ("named", "expression"):
         if name == "SPOS":  # the spindle turns to an angle: it may be one of the rotary axes
             return ROTARY
-        return None if name in MOVING else LINEAR if name in POLAR else ""
+        return None if name in MOVING else LINEAR if name in POLAR | LENGTHS else ""
     if kind == "indexed":
         return "" if name in "IJKMRS" else ALL
     if kind == "tool_name":
