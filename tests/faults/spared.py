@@ -11,6 +11,20 @@ UNDOING = "plugins/gcxform_plugins/passes/volumetric/undo/machine.py"
 
 MUTATIONS = (
     Mutation(
+        "volumetric: a cut begins behind another length where it did before it",
+        COMPENSATION,
+        "self.left[:-1] | (np.abs(self._jumps()) > SAME).any(axis=1)",
+        "self.left[:-1]",
+        "tests/test_corpus.py::test_case[volumetric/length-then-line]",
+    ),
+    Mutation(
+        "volumetric: behind another length the machine is taken to have moved with it",
+        COMPENSATION,
+        "self.end[:-1]]) + jumps)[rows]",
+        "self.end[:-1]]))[rows]",
+        "tests/test_corpus.py::test_case[volumetric/length-within-the-promise]",
+    ),
+    Mutation(
         "spared: the start is free of error in the undo",
         UNDOING,
         "actual = entry + self.moved(table, self.place.first_tool)",
@@ -34,8 +48,8 @@ MUTATIONS = (
     Mutation(
         "spared: feed moves behind rapids that are left are not looked at",
         COMPENSATION,
-        "np.append(known, self.left[:-1])",
-        "np.append(known, np.zeros(len(path) - 1, np.bool_))",
+        "np.append(known, self.left[:-1] |",
+        "np.append(known, np.zeros(len(path) - 1, np.bool_) |",
         PLANTED,
     ),
     Mutation(

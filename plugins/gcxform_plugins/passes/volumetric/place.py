@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from gcxform.vocabulary import Floats, Ints
 from gcxform_plugins.passes.volumetric.levers import Lever
 
@@ -37,9 +35,7 @@ class Place:
         """Return the tools where rows begin."""
         if self.lever is not None:
             return self.lever.starts[rows]
-        if self.tool is None or self.tool.ndim == 1:
-            return self.tool
-        return self.tool[np.maximum(rows - 1, 0)]
+        return self.tool_of(rows)
 
     @property
     def first_tool(self) -> Floats | None:

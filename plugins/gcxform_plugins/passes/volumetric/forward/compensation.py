@@ -153,17 +153,18 @@ class Compensation(Window):
     def _check_begins(self, commands: Floats) -> None:
         """Refuse feed moves from where the machine is not.
 
-        Behind what is left to the machine, and at the start, the tool is off by the error there.
-        Where nothing is promised the proof measures how far.
+        Behind what is left to the machine, and at the start, the tool is off by the error there;
+        behind another length or offset by what it would be off elsewhere, until it moves. Where
+        nothing is promised the proof measures how far.
         """
         path = self.path
         feeds = path.kind != gx.Kind.RAPID
         known = path.held is not None and bool(np.isfinite(self.start[0]).all())
-        behind = np.append(known, self.left[:-1])
+        behind = np.append(known, self.left[:-1] | (np.abs(self._jumps()) > SAME).any(axis=1))
         rows = np.flatnonzero(feeds & behind)
         if not len(rows) or not np.isfinite(self.step.promise):
             return
-        off = self._off_at_start(rows, np.vstack([self.entry_command, commands]))
+        off = self._off_at_start(rows, np.vstack([self.entry_command, commands[:-1]]))
         wrong = np.flatnonzero(~(off <= self.step.limit))
         if len(wrong):
             raise self._refuse_begin(int(rows[wrong[0]]), float(off[wrong[0]]))
@@ -171,20 +172,29 @@ class Compensation(Window):
     def _off_at_start(self, rows: Ints, commands: Floats) -> Floats:
         """Return how far (n,) mm the machine is from where rows begin; nan where nobody knows.
 
-        `commands` (rows + 1, 3) are those before each row of the path.
+        `commands` (rows, 3) are those before each row of the path. Where a length or an offset is
+        another one than in the row before, the machine stands there as it did.
         """
-        places = np.vstack([self.start[:1], self.end])[rows]
-        meant = self.meant(commands[rows], self.place.tool_before(rows))
+        jumps = np.vstack([np.zeros(3), self._jumps()])
+        places = (np.vstack([self.start[:1], self.end[:-1]]) + jumps)[rows]
+        commands = (commands + jumps)[rows]
+        meant = self.meant(commands, self.place.tool_before(rows))
         gap = np.where(np.isnan(places), 0.0, meant - places)
         off = np.sqrt((gap**2).sum(axis=1))
         near = self.step.max_correction
-        return np.where(beyond_tables(self.step, commands[rows], near), np.nan, off)
+        return np.where(beyond_tables(self.step, commands, near), np.nan, off)
+
+    def _jumps(self) -> Floats:
+        """Return by how much (rows - 1, 3) places in the table change between rows, unmoved."""
+        return np.diff(np.broadcast_to(self.offset, self.end.shape), axis=0)
 
     def _refuse_begin(self, row: int, off: float) -> gx.InputError:
         """Return the error about a feed move that begins where the machine is not."""
         path = self.path
         size = f"{off:.4f} mm off" if np.isfinite(off) else "off by an amount that is not known"
         what = "behind a rapid that is not compensated" if row else "at the start"
+        if row and not self.left[row - 1]:
+            what = "behind another length or offset, without a move between"
         inch = 25.4 if path.blocks.inch[path.block[row]] else 1.0
         words = zip("XYZ", path.in_frames(path.start)[row, :3] / inch, strict=True)
         there = " ".join(f"{axis}{word:.6g}" for axis, word in words if np.isfinite(word))
