@@ -7,8 +7,6 @@ KNOWN = {
     "it stays as it stands, and no place is known behind it",
     "siemens_mcall": "it names neither a motion code nor a feed, so settings of the control decide "
     "both (MD20150); with G0 and F before, tests/test_siemens.py reads it as the fact says",
-    "siemens_and_eq_precedence": "it asks for a refusal, for the manual's reading is rarely meant; "
-    "the jump stays as it stands, and both ways of it are carried",
     "klipper_g92_bare_zeroes": "G92 alone is refused: firmware differs in what it sets",
     "prusa_g92_bare_nothing": "G92 alone is refused: firmware differs in what it sets",
     "rrf_r_beats_ij": "an arc with R and a centre is refused in every dialect",
