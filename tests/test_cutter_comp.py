@@ -104,9 +104,44 @@ def test_windows_make_no_difference(size: int, monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_stretches_stay_whole() -> None:
-    texts = [b"X1\n", b"g 041 d1\n", b"X2\n", b"G40 (X)\n", b"G4 P1\n", b"Z3\n", b"G42\nG40 X1\n"]
-    assert list(whole_stretches(iter(texts))) == [texts[0], b"".join(texts[1:6]), texts[6]]
+    texts = [b"X1\n", b"g 041 d1\n", b"X2\n", b"G40 (X)\n", b"G4 P1\n", b"Z3\n", b"X9\n"]
+    last = b"G42\nG40 X1 Y1\n"
+    assert list(whole_stretches(iter([*texts, last]))) == [texts[0], b"".join(texts[1:]), last]
     assert list(whole_stretches(iter(texts[:3]))) == [texts[0], b"".join(texts[1:3])]
+
+
+LEAVING = """G21 G90 G17 G94 G40 G49
+G54 G0 X0. Y-10. Z5.
+G1 Z-1. F200
+G41 D1 X0. Y10.
+X10. Y10.
+X10. Y0.
+G40
+Z5.
+G1 X50. Y0.
+X100. Y0.
+M30
+"""
+
+
+@pytest.mark.parametrize("size", [1, 20, 1 << 20])
+def test_the_way_off_a_contour_is_kept_in_every_window(
+    size: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("gcxform.syntax.source.WINDOW", size)
+    chain = "segment arcs=split max-length=30mm"
+    with pytest.raises(gx.InputError) as error:
+        done(LEAVING, chain, "fanuc")
+    assert [(each.code, each.where.line) for each in error.value.diagnostics] == [("GX233", 9)]
+    assert "G1 X75." in done(
+        LEAVING.replace("X50.", "X30.").replace("X100.", "X120."), chain, "fanuc"
+    )
+
+
+def test_how_a_contour_is_left_along_the_tool_is_not_guessed() -> None:
+    chain = "cutter-comp corners=arc entry=own"
+    assert refused(LEAVING, chain, "fanuc") == "GX232"
+    assert "X10. Z5." in done(LEAVING, "cutter-comp")
 
 
 # --- the centre path ---

@@ -177,7 +177,8 @@ class State:
     row_frame   the frame of the last row
     polar       radius and angle last programmed in G16, in `polar_plane`
     side, radius  cutter compensation in force; `at_side`: that of the last move;
-                  `cancelled`: G40 has been in force since
+                  `cancelled`: G40 has been in force since; `leaving`: no move in the plane has
+                  left the contour since
     selected      the T word; `tool`: the tool in the spindle; `stored`: the D word; nan: not known
     pull   P and Q of the last move if that was a G5, in units of the program
     nurbs  how many control points a spline has that G5.3 has not ended, and its order
@@ -209,6 +210,7 @@ class State:
     tool: float = np.nan
     stored: float = np.nan
     at_side: int = 0
+    leaving: bool = False
     cancelled: bool = False
     stated: set[str] = field(default_factory=set)
     assumed: dict[str, Diagnostic | None] = field(default_factory=dict)

@@ -27,6 +27,7 @@ from gcxform.pipeline.plan import Plan
 from gcxform.plugin.registry import default_registry
 from gcxform.syntax.source import Source, has_sign
 from gcxform.system.arrays import Flags, Ints
+from gcxform.toolpath.contours import contour_rows
 from gcxform.toolpath.path import Toolpath
 
 CODE = re.compile(rb"G[ \t]*0*4[ \t]*([012])")
@@ -76,10 +77,12 @@ def _bare(text: bytes) -> bytes:
 def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
     """Yield texts of whole lines that end where no compensation is in force and the tool has left.
 
-    What is looked for are the letters; a text that is cut elsewhere is refused by the pass.
+    It has left with words of two of X, Y and Z: in every plane one of them is of the plane. What is
+    looked for are the letters; a text that is cut elsewhere is refused by the pass.
     """
     waiting: list[bytes] = []
     on, left = False, True
+    seen: set[bytes] = set()
     for text in texts:
         waiting.append(text)
         plain = _bare(text) if not left or has_sign(CODE, text) else b""
@@ -87,7 +90,9 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
         if found:
             on = found[-1][1] != b"0"
         if found or not left:
-            left = not on and AXIS.search(plain, found[-1].end() if found else 0) is not None
+            behind = AXIS.findall(plain, found[-1].end() if found else 0)
+            seen = {*behind} if found else {*seen, *behind}
+            left = not on and len(seen) > 1
         if left:
             yield b"".join(waiting)
             waiting = []
@@ -102,10 +107,10 @@ def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
     offsets what it reads, and a point that is moved by a little, or a corner more, leads the centre
     of the tool elsewhere by more than that.
     """
-    held = _contour(before)
+    held = contour_rows(before)[:-1]
     if not held.any() and not after.side.any():
         return
-    rows, new = np.flatnonzero(held), np.flatnonzero(_contour(after))
+    rows, new = np.flatnonzero(held), np.flatnonzero(contour_rows(after)[:-1])
     if type(step).undo is not Pass.undo and before.side.any():
         wrong, what = np.flatnonzero(before.side)[:1], "moves a contour"
     elif len(rows) != len(new):
@@ -115,12 +120,6 @@ def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:
     if len(wrong):
         message = f"{step.name} {what} that the control offsets by the tool's radius"
         raise before.refuse("GX233", wrong, message, put_before("cutter-comp", step.name))
-
-
-def _contour(path: Toolpath) -> Flags:
-    """Return the rows (n,) under compensation, and those that end it."""
-    on = path.side != 0
-    return np.asarray(on | np.append(path.after_side != 0, on[:-1])[: len(on)])
 
 
 def _of_other_count(before: Toolpath, after: Toolpath, rows: Ints, new: Ints) -> Ints:

@@ -200,7 +200,7 @@ class Toolpath(Tabled):
     joined          whether rows may stand for several: blocks left without one are not written
     left_out        letters of axes that are not written, because the machine has none such
     after_rapid     whether the move before the first row was a rapid
-    after_side      side of cutter compensation of the move before the first row
+    leaving         whether a contour under cutter compensation was not left before the first row
     held            (axes,) where what was written before has left the axes, which may be elsewhere
                     than `entry` if a pass compensates; None: as the pass would write `entry`
     refit_centres   whether centres may be moved so that both ends are on the circle as formatted
@@ -235,7 +235,7 @@ class Toolpath(Tabled):
     joined: bool = False
     left_out: str = ""
     after_rapid: bool = False
-    after_side: int = 0
+    leaving: bool = False
     held: Floats | None = None
     refit_centres: bool = True
 

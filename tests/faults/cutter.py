@@ -175,10 +175,24 @@ MUTATIONS = (
     ),
     Mutation(
         "compensated: the move that ends compensation may be moved",
-        "gcxform/pipeline/cutter_comp.py",
-        "on | np.append(path.after_side != 0, on[:-1])[: len(on)]",
-        "on",
+        "gcxform/toolpath/contours.py",
+        "last_on > last_left",
+        "np.append(on, False)",
         PLANTED,
+    ),
+    Mutation(
+        "compensated: a move along the tool ends compensation",
+        "gcxform/toolpath/contours.py",
+        "np.where(in_plane & ~on, rows, -2)",
+        "np.where(~on, rows, -2)",
+        f"{CORPUS}[cutter-comp/gx233-leaving-behind-z]",
+    ),
+    Mutation(
+        "compensated: a window that begins within a contour is free of it",
+        "gcxform/toolpath/contours.py",
+        "-1 if path.leaving else -2",
+        "-2",
+        "tests/test_cutter_comp.py::test_the_way_off_a_contour_is_kept_in_every_window",
     ),
     Mutation(
         "stretches: the move that ends compensation is none of it",

@@ -18,7 +18,8 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.state import CYCLE_OFF, Modes
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.columns import constant
-from gcxform.toolpath.path import Kind, Plane
+from gcxform.toolpath.contours import contour_rows
+from gcxform.toolpath.path import Kind, Plane, Toolpath
 
 GIVEN = 3  # the number of G41.1: from here on D is the diameter itself
 SIDES = np.array([0, 1, -1, 1, -1], np.int8)  # by the number of the code: G40 G41 G42 G41.1 G42.1
@@ -168,12 +169,12 @@ def _stop(lines: Lines, line: int, message: str, hint: str = AGAIN) -> None:
     lines.findings.add(line, "GX230", message, hint=hint)
 
 
-def refuse_ends(lines: Lines, modes: Modes, side: Small, kind: Small, rows: Ints) -> None:
+def refuse_ends(lines: Lines, modes: Modes, path: Toolpath, rows: Ints) -> None:
     """Refuse arcs that begin compensation, or come next after it, where the control stops.
 
     Nor may compensation begin again before a move has ended it.
     """
-    state = lines.state
+    state, side = lines.state, path.side
     before = np.append(np.int8(state.at_side), side[:-1])
     off = np.cumsum(modes.comp == 0) + int(state.cancelled)
     again = (before != 0) & (side != 0) & (np.diff(off[rows], prepend=0) > 0)
@@ -185,7 +186,8 @@ def refuse_ends(lines: Lines, modes: Modes, side: Small, kind: Small, rows: Ints
         state.cancelled = bool(off[-1] > last)
     if len(rows):
         state.at_side = int(side[-1])
-    arc = kind >= Kind.ARC_CW
+        state.leaving = bool((state.leaving or side.any()) and contour_rows(path)[-1])
+    arc = path.kind >= Kind.ARC_CW
     for row in np.flatnonzero(arc & (before != 0) & (side == 0)).tolist():
         _stop(lines, int(rows[row]), "the move that ends cutter compensation is an arc", "")
     if lines.dialect.cutter_comp.arc_entry:

@@ -282,11 +282,11 @@ class Moves:
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
         line, rows = rows.line, blind_rows(self.track, rows)
-        path = self._fed(self._unfinished(rows), rows).replace(after_side=self.state.at_side)
+        path = self._fed(self._unfinished(rows), rows).replace(leaving=self.state.leaving)
         if len(line):
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
             self.state.row_frame = self.track.frames[int(path.frame[-1])]
-        refuse_ends(self.lines, self.modes, path.side, path.kind, line)
+        refuse_ends(self.lines, self.modes, path, line)
         if self.side.any():
             self._refuse_mirrored(path)
         self.nurbs.refuse_unknown_start(path)

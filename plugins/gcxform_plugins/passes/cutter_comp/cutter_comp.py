@@ -148,6 +148,9 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
     changes |= np.append(False, both & (path.plane[1:] != path.plane[:-1]))
     changes |= np.append(False, both & (path.frame[1:] != path.frame[:-1]))
     leaves = np.append(False, on[:-1]) & ~on
+    rule = context.source.cutter_comp
+    way = np.abs(path.end - path.start)[:, :3] > STILL
+    in_plane = (way & (np.arange(3) != 2 - path.plane[:, None])).any(axis=1)
     for wrong, code, message, hint in (
         (
             on & np.isnan(path.radius),
@@ -173,6 +176,12 @@ def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
             "GX232",
             "a move of its own kind under cutter compensation",
             AGAIN,
+        ),
+        (
+            leaves & ~in_plane & (not (rule.corners and rule.entry)),
+            "GX232",
+            "the first move behind G40 is not in the plane: controls differ in whether it ends it",
+            "program X or Y in the block with G40",
         ),
     ):
         if wrong.any():
