@@ -16,10 +16,10 @@ import pytest
 from cli_kit import call
 from seeds_kit import LONG
 
-BENCHY = (
-    Path(__file__).parents[2]
-    / "shared/corpus/programs/reprap/bradenwingfield-gcode-parsing/3DBenchy_Cura.gcode"
-)
+BESIDE = Path(__file__).parents[2] / "shared/corpus/programs/reprap/bradenwingfield-gcode-parsing"
+BY_CURA, BY_PRUSA = (BESIDE / f"3DBenchy_{slicer}.gcode" for slicer in ("Cura", "Prusa"))
+IN_THE_AIR = ("G1 Z50 F240", "G1 X2.0 Y10 F3000", "G1 Z0.28 F240")
+"""Feed moves of the start code, where the printer stands nowhere known: GX317 wants rapids."""
 WORD = re.compile(r"([GMXYZEF])(-?\d*\.?\d+)")
 PIPELINE = """format = 1
 [input]
@@ -34,6 +34,7 @@ max-length = "5 mm"
 use = "volumetric"
 model = "printer.cfg"
 tolerance = "2 um"
+outside = "clamp"
 max-correction = "1 mm"
 """
 PRINTER = "format = 1\n[axis.X]\n[axis.Y]\n[axis.Z]\n" + "".join(
@@ -59,7 +60,7 @@ def bed() -> str:
     return BED.format("".join(f"  {', '.join(f'{h:.6f}' for h in row)}\n" for row in rows))
 
 
-def compensated(program: str, dialect: str, folder: Path) -> str:
+def write_shop(folder: Path, dialect: str, program: str) -> None:
     for name, text in (
         ("p.toml", PIPELINE.format(dialect)),
         ("printer.toml", PRINTER),
@@ -67,6 +68,10 @@ def compensated(program: str, dialect: str, folder: Path) -> str:
         ("print.gcode", program),
     ):
         (folder / name).write_text(text)
+
+
+def compensated(program: str, dialect: str, folder: Path) -> str:
+    write_shop(folder, dialect, program)
     done = call("run", "-q", "-p", str(folder / "p.toml"), str(folder / "print.gcode"))
     assert done.exit_code == 0, done.output
     return str(done.stdout)
@@ -97,9 +102,10 @@ def check(before: str, after: str) -> int:
     extruding = [m for m in was if m.fed and m.way >= 1e-9]
     near = 2e-5 if "M83" in before else 4e-6  # what is left by the rounding of pieces
     for move in extruding:
-        left = move.fed
-        while left > near:
+        left, way = move.fed, move.way
+        while abs(left) > near or way > 1e-3 * move.way:  # less than 0: it wipes and draws back
             piece = next(pieces)
+            way -= piece.way
             assert abs(piece.fed - move.fed / move.way * piece.way) < 1e-4 * piece.way + 1.1e-5, (
                 move,
                 piece,
@@ -111,12 +117,29 @@ def check(before: str, after: str) -> int:
     return len(extruding)
 
 
-@pytest.mark.skipif(not BENCHY.is_file(), reason="no Benchy beside the checkout")
+@pytest.mark.skipif(not BY_CURA.is_file(), reason="no Benchy beside the checkout")
 def test_a_benchy_on_a_tilted_and_bowed_bed(tmp_path: Path) -> None:
-    text = BENCHY.read_text().replace("G1 Z2.0 F3000", "G0 Z2.0 F3000", 1)  # as GX317 asks for
+    text = BY_CURA.read_text().replace("G1 Z2.0 F3000", "G0 Z2.0 F3000", 1)  # as GX317 asks for
     lines = text.splitlines(keepends=True)
     program = "".join(lines if LONG else lines[:1200])
     assert check(program, compensated(program, "marlin2", tmp_path)) > (50_000 if LONG else 900)
+
+
+@pytest.mark.skipif(not BY_PRUSA.is_file(), reason="no Benchy beside the checkout")
+def test_a_benchy_by_prusaslicer_through_post(tmp_path: Path) -> None:
+    """What PrusaSlicer has written is handed to `post` as it hands it over: the file, in place."""
+    text = BY_PRUSA.read_text()
+    for line in IN_THE_AIR:
+        assert f"\n{line}\n" in text
+        text = text.replace(f"\n{line}\n", f"\nG0{line[2:]}\n", 1)
+    lines = text.splitlines(keepends=True)
+    program = "".join(lines if LONG else lines[:4000])
+    write_shop(tmp_path, "marlin2", program)
+    done = call("post", "-p", str(tmp_path / "p.toml"), str(tmp_path / "print.gcode"))
+    assert done.exit_code == 0, done.output
+    after = (tmp_path / "print.gcode").read_text()
+    assert "GCXFORM STAMP" in after
+    assert check(program, after) > (100_000 if LONG else 2_000)
 
 
 def made(relative: bool) -> str:

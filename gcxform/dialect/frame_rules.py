@@ -59,6 +59,8 @@ class ToolRule:
                            another one
     t_changes              T by itself changes the tool: programs of the control run, and another
                            offset of the tool is in force, along any axis
+    t_selects              T says which tool is next, and moves nothing; False: it is refused where
+                           no other code takes it
     """
 
     in_table: bool = False
@@ -70,6 +72,7 @@ class ToolRule:
     length_may_move: bool = False
     units_spoil_length: bool = False
     t_changes: bool = False
+    t_selects: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,13 @@ CASE = "tests/test_corpus.py::test_case[printers/{}]"
 
 MUTATIONS = (
     Mutation(
+        "printers: a T that changes the tool is nothing",
+        "gcxform/modal/meaning/numbered.py",
+        "(rule.t_selects and not rule.t_changes)",
+        "not rule.t_changes",
+        CASE.format("tool-change"),
+    ),
+    Mutation(
         "printers: M83 is not heard",
         "gcxform/modal/meaning/sorting.py",
         'if code.group in ("spindle", "extrusion"):',

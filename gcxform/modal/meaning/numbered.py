@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from lark import Token
 
 from gcxform.dialect.dialect import Dialect
-from gcxform.modal.meaning.meaning import Act, EventShape, Meaning
+from gcxform.modal.meaning.meaning import Act, EventShape, Meaning, Refusal
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import BLANKS, CODES, Number, Statement, Word
 
@@ -53,11 +53,16 @@ def length_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Non
     meaning.events.append(EventShape(46, "H", taken))
 
 
-def tool_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> None:
+def tool_number(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
     """Let a T change the tool where it does so by itself; elsewhere it only says which is next."""
-    if not dialect.tool_rule.t_changes or "T" not in meaning.slots:
+    rule = dialect.tool_rule
+    if "T" not in meaning.slots or (rule.t_selects and not rule.t_changes):
         return
     word = next(word for word in shape.block.words if word.address == "T")
+    if not rule.t_changes:
+        message = "T is not resolved: what moves when the tool changes is a setting of the machine"
+        yield Refusal("GX210", word.start, word.end - word.start, message)
+        return
     taken = (("T", meaning.slots["T"]),)
     meaning.acts.append(Act("offset-of-tool", "T", taken, word.start, word.end - word.start))
     meaning.changes_tool = meaning.loses_position = True

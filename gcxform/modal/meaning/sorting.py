@@ -370,7 +370,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     slots = meaning.slots
     spindle_number(shape, dialect, meaning)
     length_number(shape, dialect, meaning)
-    tool_number(shape, dialect, meaning)
+    yield from tool_number(shape, dialect, meaning)
     for address, order in (("S", 10), ("T", 20)):
         if address in slots:
             event = EventShape(order, address, ((address, slots[address]),))

@@ -13,7 +13,8 @@
 | a letter without a number | names an axis to G28 and M84, and is nothing to a move |
 | line | at most 96 characters with blanks; here 64 without blanks and comments |
 | arcs | in XY, by I and J, K is dropped; how fine the firmware cuts them is not known here |
-| G20, G5, G10, G11, G29, G92 alone, T | firmware differs: refused |
+| G29 alone | it probes the bed: X, Y and Z stand nowhere known; with words it is refused |
+| G20, G5, G10, G11, G92 alone, T | firmware differs: refused |
 | M codes of heaters, fans, motors, limits | move nothing |
 
 Sources: the pages of Marlin's documentation on each code; for E the sources of Prusa,
@@ -45,12 +46,14 @@ class Marlin(gx.Dialect):
     differs: ClassVar[Mapping[str, str]] = {
         "G20": "Smoothie does not read E in inches",
         "G28": "it goes to the switches, and takes letters without numbers",
+        "G29": "it probes the bed",
         "m_codes": "a file ends where it ends",
     }
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{code: what for code, what in v.ISO.items() if code not in GONE},
         "G92": v.frame("non-modal", "preset", "XYZE"),
         "G28": v.frame("non-modal", "home"),
+        "G29": v.frame("non-modal", "home"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         0: v.ISO_M[0],
@@ -62,14 +65,15 @@ class Marlin(gx.Dialect):
         **{code: gx.MCode("heat", takes="SRPBIF") for code in HEAT},
         **{code: gx.MCode("fan", takes="SP") for code in FAN},
         **{code: gx.MCode("motors", takes="S") for code in MOTORS},
-        **{code: gx.MCode("limits", takes="XYZESPRJBK") for code in LIMITS},
+        **{code: gx.MCode("limits", takes="XYZESPRTJBKQ") for code in LIMITS},
         **{code: gx.MCode("said", takes="PRSQ") for code in SAID},
     }
     program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
     text_rule = gx.TextRule(line_length=64, length_without_blanks=True, comments=";(")
-    block_rule = gx.BlockRule(words="FIJKPRSBQ", one_command=True)
+    block_rule = gx.BlockRule(words="FIJKPRSTBQ", one_command=True)
     point_rule = gx.PointRule(dwell={"P": 0.001, "S": 1.0})
     numbers = gx.NumberFormat(mm=5, inch=6)
     motion_rule = gx.MotionRule(g28_without_axes=True)
     arc_rule = gx.ArcRule(planes=frozenset({"XY"}), third="dropped")
+    tool_rule = gx.ToolRule(t_selects=False)
     offset_rule = gx.OffsetRule(known_at_start=True, g10_offsets=())

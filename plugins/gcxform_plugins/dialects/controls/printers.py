@@ -57,7 +57,7 @@ class Rrf(Marlin):
         **{code: v.barrier("rotation", v.TRANSFORM, "XYRI") for code in ("G68", "G69")},
     }
     text_rule = replace(Marlin.text_rule, comments=";")
-    block_rule = replace(Marlin.block_rule, words="FIJKLPRSBQ")
+    block_rule = replace(Marlin.block_rule, words="FIJKLPRSTBQ")
     motion_rule = replace(Marlin.motion_rule, extruder="own")
 
 
