@@ -39,6 +39,7 @@ from gcxform.catalogue.remedies import StepBefore, offers
 from gcxform.catalogue.settings import Setting
 from gcxform.cli.check import reading_findings
 from gcxform.flow.straightened import written_out
+from gcxform.machine.machine import Tool
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
@@ -56,6 +57,8 @@ INERT = {"fanuc": ("M6",), "haas": ("M6",)}
 target as of the source."""
 RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
+HELD = 99
+"""The tool that is in the spindle of a LinuxCNC before the program, of that radius."""
 SETTINGS = {"cycle-without-place": "drills", "peck-clearance": "1 mm"}
 """Setting 28 as a Haas is delivered, and Setting 22 as `known.toml` has it of a Fanuc."""
 CONTOURS = "corners=arc entry=own"
@@ -113,6 +116,9 @@ def asked_for(made: Pipeline) -> Pipeline:
         number: structs.replace(tool, radius=RADIUS) if isnan(tool.radius) else tool
         for number, tool in machine.tools.items()
     }
+    if made.source.name == "linuxcnc":
+        made = replace(made, reading=replace(made.reading, tool=HELD))
+        tools[HELD] = Tool(radius=RADIUS)
     told = {"tools": tools, "control": {**machine.control, **known}}
     inert = machine.inert_m | {int(code[1:]) for code in INERT.get(made.source.name, ())}
     return replace(made, machine=structs.replace(machine, **told, inert_m=inert, open={}))

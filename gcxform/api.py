@@ -133,7 +133,7 @@ def read(
 ) -> Program:
     """Return a program: its bytes, or the file of that name.
 
-    `reading` is what the program does not say of itself: `start`, `increment`, `feed`,
+    `reading` is what the program does not say of itself: `start`, `increment`, `feed`, `tool`,
     `block_delete`, `units`, as in `Reading`; `machine` a machine file, whose offsets, homes, tools
     and settings count. Raises FileError, and UsageError for the dialect and the machine file.
     """

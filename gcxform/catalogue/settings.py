@@ -25,7 +25,7 @@ ON_COMMAND_LINE: Final[Mapping[tuple[str, str], str]] = {
     **{
         (section, key): f"--{key}"
         for section, keys in (
-            ("input", "start increment feed-increment feed block-delete units parameters"),
+            ("input", "start increment feed-increment feed tool block-delete units parameters"),
             ("output", "decimals"),
             ("budget", "growth"),
         )

@@ -118,8 +118,10 @@ class Interpreter:
             self.reading.homes,
         )
         following = self.reading.follows_at_start(self.dialect.tip_rule.follows_at_start)
-        frames = replace(frames, following=following)
+        held = -1 if self.reading.tool is None else self.reading.tool
+        frames = replace(frames, following=following, in_spindle=held)
         state = State(groups, position, feed, unit, frames, parameters=self._given())
+        state.tool = np.nan if self.reading.tool is None else float(held)
         rule = self.dialect.cycle_rule
         if rule is not None:
             control = self.reading.control

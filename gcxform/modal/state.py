@@ -22,6 +22,7 @@ from gcxform.values import dataclass
 
 BLOCK_DELETE = ("execute", "skip", "")
 UNITS = ("mm", "in", "")
+TOOLS = 99_999_999  # a T has at most eight digits on any control
 CYCLE_OFF = 80
 UNKNOWN_SPINDLE = 3
 
@@ -51,6 +52,7 @@ class Reading:
                   "calculator", a length in mm; None: such a distance is refused where the dialect
                   asks for a point
     feed          feed in effect before the first F word, in the program's unit
+    tool          number of the tool in the spindle before the first block, None if not known
     block_delete  "execute", "skip", or "" to refuse blocks with a slash that do anything
     units         "mm" or "in" until the program says G20 or G21; "" for the dialect's default
     work_offsets  machine positions of work offsets, by code
@@ -101,6 +103,7 @@ class Reading:
     subprograms: tuple[Path, ...] = ()
     told: Mapping[str, float] = field(default_factory=dict)
     entry: Entry = field(default_factory=Entry)
+    tool: int | None = None
 
     def __post_init__(self) -> None:
         """Take what a caller may write for what it means; refuse all else. Raises UsageError."""
@@ -130,6 +133,7 @@ class Reading:
         return {
             "start": start,
             "parameters": parameters,
+            "tool": None if self.tool is None else arguments.whole("tool", self.tool, TOOLS),
             "feed": None if self.feed is None else arguments.positive("feed", self.feed),
             "block_delete": arguments.chosen("block_delete", self.block_delete, BLOCK_DELETE),
             "units": arguments.chosen("units", self.units, UNITS),

@@ -181,6 +181,8 @@ def assumptions(
         found.append(f"{axis} stands at {value:g} before the first block")
     if reading.feed is not None:
         found.append(f"F{reading.feed:g} is in force before the first block")
+    if reading.tool is not None:
+        found.append(f"tool {reading.tool} is in the spindle before the first block")
     for name, value in reading.parameters.items():
         found.append(f"#{name} is {value:g} before the first block")
     if reading.told:

@@ -65,6 +65,9 @@ class InputSpec:
         FeedIncrement | None,
         Option("what 1 means in an F without a point, per minute", above=0.0),
     ] = None
+    tool: Annotated[
+        int | None, Option("the tool in the spindle before the first block", above=0.0)
+    ] = None
     block_delete: Annotated[
         Literal["execute", "skip", ""], Option("what the control does with / blocks")
     ] = ""

@@ -208,5 +208,6 @@ def _reading(source: type[Dialect], spec: PipelineSpec) -> Reading:
         given.feed_increment,
         dict(given.parameters),
         subprograms=given.subprograms,
+        tool=given.tool,
         entry=Entry(tuple(said.modes.split()), dict(said.start), said.feed, dict(said.parameters)),
     )

@@ -91,6 +91,9 @@ _READING = (
     ),
     click.option("--feed", metavar="NUMBER", help="The feed before the first F word, a minute."),
     click.option(
+        "--tool", metavar="NUMBER", help="The tool in the spindle before the first block."
+    ),
+    click.option(
         "--units", type=click.Choice(["mm", "in"]), help="Units before the first G20 or G21."
     ),
     click.option("--parameters", metavar="100=1.5", help="Values that the program does not set."),

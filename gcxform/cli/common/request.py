@@ -38,6 +38,7 @@ class Asked:
     block_delete: str | None = None
     feed_increment: str | None = None
     feed: str | None = None
+    tool: str | None = None
     units: str | None = None
     parameters: str | None = None
     subprograms: tuple[str, ...] = ()
@@ -148,7 +149,7 @@ class Asked:
 
     def _given(self) -> dict[str, object]:
         """Return what is said of the program, by the keys of `[input]`."""
-        keys = ("increment", "feed-increment", "block-delete", "feed", "units")
+        keys = ("increment", "feed-increment", "block-delete", "feed", "units", "tool")
         said = {key: getattr(self, key.replace("-", "_")) for key in keys}
         raw: dict[str, object] = {key: Argument(v) for key, v in said.items() if v is not None}
         if self.start:
@@ -179,7 +180,11 @@ class Asked:
         said = self.input()
         given = (dict(said.start), said.increment, said.feed, said.block_delete, said.units)
         reading = Reading(
-            *given, said.feed_increment, said.parameters, subprograms=said.subprograms
+            *given,
+            said.feed_increment,
+            said.parameters,
+            subprograms=said.subprograms,
+            tool=said.tool,
         )
         return reading.on(self.loaded_machine) if self.loaded_machine else reading
 

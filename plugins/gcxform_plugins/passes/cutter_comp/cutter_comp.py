@@ -195,7 +195,10 @@ def _radius_said(path: gx.Toolpath, context: gx.PassContext) -> str:
     tables = (event for event in path.events if event.what == "G10")
     if any(dict(event.values).get("L", np.nan) in kinds for event in tables):
         return WRITTEN
-    return "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]"
+    said = "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]"
+    if context.source.cutter_comp.stored or any(event.what == "M6" for event in path.events):
+        return said
+    return f"{said}; a tool that is in the spindle from the start: tool = n in [input]"
 
 
 def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
