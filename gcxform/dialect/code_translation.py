@@ -15,6 +15,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
 | no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
 | G28, to a point of another kind there, or letting go of the tool length | G53 to the point |
+| a tool length by its value (G43.1) | nothing, where `offsets` takes it into the words |
 | a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
 | a comment that shows or logs something | a comment |
 """
@@ -167,6 +168,11 @@ class Saying:
         return not any(other.act == code.act for other in self.target.codes.values()) and bool(
             self._named(VECTOR)
         )
+
+    def folds_value(self, act: str) -> bool:
+        """Whether an act gives a tool length by its value, and the target has none that does."""
+        there = any(code.act == VECTOR for code in self.target.codes.values())
+        return act == VECTOR and self.crosses and not there
 
     def ends_length_alone(self, what: str) -> bool:
         """Whether a code that lets go of a tool length has a block of its own there.

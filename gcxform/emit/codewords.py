@@ -95,7 +95,7 @@ class CodeWords:
         code = self.source.codes.get(name)
         if code is not None and code.group == "cutter-comp":
             self.draft.refuse(word, what, put_before("cutter-comp"))
-        if code is not None and code.act in FRAMING:
+        if code is not None and (code.act in FRAMING or self.saying.folds_value(code.act)):
             self.draft.refuse(word, what, put_before("offsets"))
         if code is not None and code.effect is Effect.INERT:
             self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")

@@ -223,14 +223,19 @@ class Depending:
     def _lengths_left(self, line: int) -> list[tuple[str, str]]:
         """Return what of those lengths folding would leave."""
         meaning = self.task.table.meanings[int(self.task.shape[line])]
-        framing = {act.code for act in meaning.acts if act.name in FRAMING}
+        framing = {act.code for act in meaning.acts if self._framing(act.name)}
         return [(name, address) for name, address, _ in meaning.lengths if name not in framing]
+
+    def _framing(self, act: str) -> bool:
+        """Whether folding takes an act into the words of moves."""
+        return act in FRAMING or self.task.manner.saying.folds_value(act)
 
     def _lengths_kept(self, line: int) -> list[tuple[str, str]]:
         """Return code and address of lengths, not 0, that codes of a line take and that stay."""
         window, first = self.task.window, int(self.task.window.first_number[line])
         meaning = self.task.table.meanings[int(self.task.shape[line])]
-        folded = {act.code for act in meaning.acts if act.name in FRAMING and self.path.folded}
+        folds = self.path.folded
+        folded = {act.code for act in meaning.acts if folds and self._framing(act.name)}
         if self.path.blocks.uncompensated:
             folded.add(meaning.groups.get("cutter-comp", ""))
         return [

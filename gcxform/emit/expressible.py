@@ -57,7 +57,8 @@ def unsaid_words(meaning: Meaning, work: str, saying: Saying) -> frozenset[str]:
     """
     gone = {act.code for act in meaning.acts if act.name in SWITCHES}
     for act in meaning.acts if work else ():
-        if act.name in FRAMING and act.code != work:
+        framing = act.name in FRAMING or saying.folds_value(act.name)
+        if framing and act.code != work:
             gone |= {act.code, *(address for address, _ in act.slots)}
     for event in meaning.events if saying.crosses or saying.drop else ():
         taken = "".join(address for address, _ in event.slots)

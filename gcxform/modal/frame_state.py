@@ -19,6 +19,8 @@ from gcxform.toolpath.frames import Frame, Matrix, Vector
 from gcxform.values import dataclass
 
 NO_TOOL = (0.0, 0.0, 0.0)
+BY_VALUE = "G43.1"
+"""The name of a tool vector that the program gives."""
 UNFRAMED: Final = frozenset(
     {
         *("known", "in_spindle", "changes", "homes", "written", "number", "lost_numbers", "tilted"),
@@ -215,6 +217,7 @@ class FrameState:
             self.tool,
             self.following,
             bool(self.tool_name),
+            self.tool_name == BY_VALUE,
         )
 
     def _set_anywhere(self, turned: bool) -> dict[int, str]:

@@ -112,8 +112,10 @@ class EventProof:
         )
         if not self.folded:
             return events
-        codes = self.context.source.codes
-        return tuple(e for e in events if e.what not in codes or codes[e.what].act not in FRAMING)
+        codes, folds = self.context.source.codes, self.context.saying.folds_value
+        acts = [codes[e.what].act if e.what in codes else "" for e in events]
+        told = [act not in FRAMING and not folds(act) for act in acts]
+        return tuple(event for event, here in zip(events, told, strict=True) if here)
 
     def unset(self, path: Toolpath) -> int:
         """Return how many codes of a source leave a zero in the control, and are folded away."""

@@ -212,7 +212,7 @@ def _frames(path: Toolpath, dialect: type[Dialect]) -> Any:
 
     Whether a length of nothing was called does not matter to them.
     """
-    frames = (repr(replace(frame, called=False)) for frame in path.frames)
+    frames = (repr(replace(frame, called=False, valued=False)) for frame in path.frames)
     found = np.array(["", *frames])[path.frame + 1]
     found[[row for row, _ in _machine(path, dialect)]] = ""
     return found

@@ -40,6 +40,7 @@ class Frame:
     following  whether the control takes X, Y and Z for the tip; None where that is not known, or no
              code that is read switches it
     called   whether the program has called a tool length, which may be 0
+    valued   whether it has given that length by its value (G43.1), and not by a number
     """
 
     work: str
@@ -51,6 +52,7 @@ class Frame:
     tool: tuple[float, float, float] = (0.0, 0.0, 0.0)
     following: bool | None = None
     called: bool = False
+    valued: bool = False
 
     @cached_property
     def shifts_only(self) -> bool:

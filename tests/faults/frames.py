@@ -8,6 +8,20 @@ ROADS = "tests/properties/test_roads.py::test_a_frame_that_is_kept_is_the_one_th
 
 MUTATIONS = (
     Mutation(
+        "offsets: a length by its value stays where the target has no code for it",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "spent and frame.valued",
+        "False",
+        "tests/test_corpus.py::test_case[offsets/length-by-value-elsewhere]",
+    ),
+    Mutation(
+        "offsets: a length by its number goes into the words where one by its value would",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "spent and frame.valued",
+        "spent",
+        "tests/test_corpus.py::test_case[offsets/length-by-value-elsewhere]",
+    ),
+    Mutation(
         "frames: the sign of G92 is swapped",
         "gcxform/modal/frames/work_offsets.py",
         "shift[k] += here[k] - value",

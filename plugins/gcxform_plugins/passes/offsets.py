@@ -21,8 +21,9 @@ class Offsets(gx.Pass):
     The program then stays in the work offset in which it starts, and the codes that shifted or
     turned its coordinates are not written. What they would leave behind in the control is lost,
     and the certificate says of how many.
-    Tool lengths, G28 and G53 stay as they are. How far two work offsets are apart has to be known,
-    from the machine file or from the program.
+    Tool lengths, G28 and G53 stay as they are; but a length that is given by its value (G43.1) goes
+    into the words of a control that has no such code. How far two work offsets are apart has to be
+    known, from the machine file or from the program.
     """
 
     name = "offsets"
@@ -33,20 +34,24 @@ class Offsets(gx.Pass):
         """Return the path with every row in the work offset in which the program starts."""
         self._check_known(path)
         self._check_turned(path)
-        frames = tuple(self._unshifted(frame, path) for frame in path.frames)
+        spent = context.saying.folds_value("length-vector")
+        frames = tuple(
+            self._unshifted(frame, path, spent and frame.valued) for frame in path.frames
+        )
         return path.replace(frames=frames, folded=True)
 
-    def _unshifted(self, frame: gx.Frame, path: gx.Toolpath) -> gx.Frame:
-        """Return the frame in which only the tool length is left."""
-        tool = np.zeros(len(frame.shift))
-        tool[:3] = np.nan_to_num(np.array(frame.tool))
+    def _unshifted(self, frame: gx.Frame, path: gx.Toolpath, spent: bool) -> gx.Frame:
+        """Return the frame in which only the tool length is left; `spent`: not in the words."""
+        shift = np.zeros(len(frame.shift))
+        shift[:3] = 0.0 if spent else np.nan_to_num(np.array(frame.tool))
         return gx.Frame(
             path.first,
-            tuple(tool.tolist()),
+            tuple(shift.tolist()),
             frame.origin,
             tool=frame.tool,
             following=frame.following,
-            called=frame.called,
+            called=frame.called and not spent,
+            valued=frame.valued,
         )
 
     def _check_known(self, path: gx.Toolpath) -> None:
