@@ -1,11 +1,12 @@
 """Write every real program in each other dialect, and say which are, and why each other is not.
 
     python benchmarks/translation.py [CORPUS] [--from NAME] [--to NAME] [--every N] [--list]
-                                     [--cause TEXT] [--keep FOLDER]
+                                     [--cause TEXT] [--lathes] [--keep FOLDER]
 
 The programs are those of `corpus.py`, with the machines that it gives them. What counts is a
 program that goes through `absolute` in its own dialect, is no file of a subprogram (which goes with
-the program that calls it) and moves no axis that the target lacks.
+the program that calls it), none of a lathe (`--lathes` takes those as well), and moves no axis that
+the target lacks.
 *Verified* is one whose result is proved in the target, which `check` finds nothing new in, and of
 which LinuxCNC's interpreter, where that is the target, reads every line to the end; what is proved
 and is not so is a cause of its own, `CHECK` or `RS274`, for it is worth more than a refusal. Where
@@ -57,6 +58,8 @@ INERT = {"fanuc": ("M6",), "haas": ("M6",)}
 target as of the source."""
 RADIUS = 1.27
 """mm, of tools of which it was never asked: as `known.toml` has those of which it was."""
+LATHES = re.compile(r"lathe|/g76")
+"""In the path of a program for turning, which is asked of no mill."""
 HELD = 99
 """The tool that is in the spindle of a LinuxCNC before the program, of that radius."""
 SETTINGS = {"cycle-without-place": "drills", "peck-clearance": "1 mm"}
@@ -357,12 +360,13 @@ def main() -> int:
     parser.add_argument("--every", type=int, default=1, help="each so manieth program")
     parser.add_argument("--list", action="store_true", help="one line per program")
     parser.add_argument("--cause", help="list those alone whose cause has this text")
+    parser.add_argument("--lathes", action="store_true", help="programs for turning as well")
     parser.add_argument("--keep", type=Path, help="write the results into a folder")
     options = parser.parse_args()
     sources = (options.source,) if options.source else TARGETS
     targets = (options.to,) if options.to else TARGETS
     jobs = [job for job in counted(options.corpus, sources) if job.chain == "absolute"]
-    jobs = jobs[:: options.every]
+    jobs = [job for job in jobs[:: options.every] if options.lathes or not LATHES.search(job.path)]
     with ProcessPoolExecutor(2) as pool:
         goes = list(pool.map(own, jobs, chunksize=4))
         todo = list(pairs((j for j, good in zip(jobs, goes, strict=True) if good), targets))

@@ -161,18 +161,30 @@ def told(text: str) -> np.ndarray:
     return np.array([*path.end[:, :3]])
 
 
+def theirs_of(text: str, slip: float = 0.0) -> np.ndarray:
+    return np.array([move[:3] for move in fagor_flow.Program(text, slip).moves])
+
+
+def check(text: str) -> None:
+    """Hold a program against the other reader.
+
+    A sine of a sine of a value, in a loop, may hang on the last bit of the first: what then differs
+    has to differ within the other reader as well, whose sines come out too large by that bit.
+    """
+    mine, theirs = told(text), theirs_of(text)
+    assert mine.shape == theirs.shape, text
+    if np.abs(mine - theirs).max() >= NEAR:
+        slips = [np.abs(theirs_of(text, slip) - theirs) for slip in (2.3e-16, -1.2e-16, 1e-15)]
+        assert (np.abs(mine - theirs) < NEAR + 1e3 * np.max(slips, axis=0)).all(), text
+
+
 @pytest.mark.parametrize("seed", some(40 if not LONG else 20_000))
 def test_it_does_what_another_reader_says(seed):
-    text = Writer(seed).program()
     try:
-        mine = told(text)
+        check(Writer(seed).program())
     except gx.InputError as error:
         if error.diagnostics[0].code not in OPEN:
             raise
-        return
-    theirs = np.array([move[:3] for move in fagor_flow.Program(text).moves])
-    assert mine.shape == theirs.shape, text
-    assert np.abs(mine - theirs).max() < NEAR, text
 
 
 @pytest.mark.parametrize("seed", some(10 if not LONG else 20_000))

@@ -15,6 +15,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
 | no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
 | G28, to a point of another kind there, or letting go of the tool length | G53 to the point |
+| G53 at a feed, where G53 is always rapid there | the place, by words of the work offset |
 | a tool length by its value (G43.1) | nothing, where `offsets` takes it into the words |
 | a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
 | a comment that shows or logs something | a comment |
@@ -195,6 +196,12 @@ class Saying:
         unknown = bare and self.crosses and not there.g28_without_axes
         unknown |= called and there.g28_ends_length and not here.g28_ends_length
         return self.instead(what) not in (what, "") or (unknown and bool(self.machine))
+
+    @property
+    def feeds_in_work(self) -> bool:
+        """Whether moves in the machine at a feed are said in the work offset: G53 is rapid."""
+        here, there = self.source.motion_rule, self.target.motion_rule
+        return self.crosses and there.g53_is_rapid and not here.g53_is_rapid
 
     def _same_home(self, what: str) -> bool:
         """Whether a code goes to the same point of the machine in the target."""

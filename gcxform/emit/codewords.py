@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.remedies import put_before
-from gcxform.dialect.code_translation import HOME
+from gcxform.dialect.code_translation import HOME, MACHINE
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
@@ -82,6 +82,8 @@ class CodeWords:
                 what = f"{name}: it goes to a point of another kind there"
                 self.draft.refuse(word, what, WAY_HOME)
             return  # G53 stands before the axis words
+        if code is not None and code.act == MACHINE and self.key.role is not Role.VERBATIM:
+            return  # its words are of the work offset
         if said != name:
             text = like(text, said)
         elif self.source is not self.target and code and not self.saying.agrees(name):

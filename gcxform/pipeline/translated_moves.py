@@ -1,7 +1,8 @@
 """Moves that the control of the output makes by other words, without being asked.
 
 Canned cycles that it has not become their moves, and ways home to another kind of point become
-moves in the machine, where it is known where home is. A compensation finds the moves of all cycles:
+moves in the machine, where it is known where home is. Moves in the machine at a feed become plain
+ones for a control whose G53 is always a rapid. A compensation finds the moves of all cycles:
 the errors of a machine on the way down a hole are others than where it begins.
 
 Splines that it has not become lines within `CHORD_ERROR` of them, behind the same steps, unless one
@@ -25,7 +26,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source
 from gcxform.toolpath.cycles_as_moves import cycles_as_moves
 from gcxform.toolpath.facts import LINEAR_ONLY
-from gcxform.toolpath.path import Form, Toolpath
+from gcxform.toolpath.path import Form, Kind, Toolpath
 from gcxform.toolpath.splines import spline_chords, splines_as_lines
 
 CHORD_ERROR = 0.002
@@ -89,7 +90,8 @@ def said_in_moves(
     if plan.chord_error and path.has_splines:
         with placing(window, file):
             path = _straight(path, plan.chord_error)
-    path, foreign = _homed(plan, read, path), plan.manner.foreign_cycles
+    path = _fed_in_work(plan, _homed(plan, read, path))
+    foreign = plan.manner.foreign_cycles
     whole = compensates(plan.path_passes)
     if not (foreign or whole) or not (path.form == Form.CYCLE).any():
         return path
@@ -103,6 +105,23 @@ def _straight(path: Toolpath, chord_error: float) -> Toolpath:
     rows, pieces = np.flatnonzero(path.is_spline), np.ones(len(path), np.int64)
     pieces[rows] = spline_chords(path, rows, chord_error * (1.0 - MEASURED))
     return splines_as_lines(path, pieces)
+
+
+def _fed_in_work(plan: Plan, path: Toolpath) -> Toolpath:
+    """Return a path in which moves in the machine at a feed are plain, where G53 is rapid there.
+
+    One whose end is not known in the work offset stays, and is refused by the target.
+    """
+    if not plan.saying.feeds_in_work:
+        return path
+    known = ~np.isnan(path.end).any(axis=1)
+    moved = (path.form == Form.MACHINE) & (path.kind == Kind.LINE) & known
+    incremental = path.blocks.incremental.copy()
+    incremental[path.block[moved]] = False
+    return path.replace(
+        form=np.where(moved, Form.PLAIN, path.form).astype(np.int8),
+        blocks=replace(path.blocks, incremental=incremental),
+    )
 
 
 def _homed(plan: Plan, read: Interpreted, path: Toolpath) -> Toolpath:

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from gcxform.contract.passes import PassContext
-from gcxform.dialect.code_translation import HOME
+from gcxform.dialect.code_translation import HOME, MACHINE
 from gcxform.dialect.codes import Effect
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.meaning.meaning import FRAMING, PRESETS
@@ -26,7 +26,7 @@ from gcxform.proof.feeds import Wrong
 from gcxform.proof.known_positions import in_mm
 from gcxform.proof.trace import Trace
 from gcxform.proof.zeros import zeros_differ
-from gcxform.toolpath.path import Event, Toolpath
+from gcxform.toolpath.path import Event, Form, Kind, Toolpath
 from gcxform.values import dataclass
 
 
@@ -64,6 +64,7 @@ class EventProof:
         told = tuple(event for event in self.told(path) if event.what not in self.switches)
         told = self._until_end(told)
         saying = self.context.saying
+        told = self._without_feeds_in_machine(told, path) if saying.feeds_in_work else told
         if not (saying.crosses or saying.drop or saying.m_codes):
             return told
         alone = {e.what for e in told if saying.lengthens(e.what)}
@@ -74,6 +75,15 @@ class EventProof:
         codes = self.context.source.codes
         home = {e.line for e in told if e.what in codes and codes[e.what].act == HOME}
         return tuple(_machine_last(there, saying.machine, home))
+
+    def _without_feeds_in_machine(
+        self, told: tuple[Event, ...], path: Toolpath
+    ) -> tuple[Event, ...]:
+        """Return events without the codes of moves that the target makes in its work offset."""
+        codes = self.context.source.codes
+        fed = {*path.source[(path.form == Form.MACHINE) & (path.kind == Kind.LINE)].tolist()}
+        machine = {name for name, code in codes.items() if code.act == MACHINE}
+        return tuple(e for e in told if not (e.what in machine and e.line in fed))
 
     def _until_end(self, told: tuple[Event, ...]) -> tuple[Event, ...]:
         """Return events without further ends behind one at which the target alone stops."""

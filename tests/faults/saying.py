@@ -13,6 +13,20 @@ ACROSS = "tests/test_corpus.py::test_case[dialects/across"
 
 MUTATIONS = (
     Mutation(
+        "saying: a feed in the machine keeps its G53 where that is a rapid",
+        "gcxform/dialect/code_translation.py",
+        "there.g53_is_rapid and not here.g53_is_rapid",
+        "False",
+        "tests/test_corpus.py::test_case[dialects/across/feed-in-the-machine]",
+    ),
+    Mutation(
+        "saying: a feed in the machine stays a step",
+        "gcxform/pipeline/translated_moves.py",
+        "incremental[path.block[moved]] = False",
+        "pass",
+        "tests/test_corpus.py::test_case[dialects/across/feed-in-the-machine]",
+    ),
+    Mutation(
         "saying: splines are lines before the step that is proved by them",
         "gcxform/pipeline/translated_moves.py",
         "if done != resolved(plan.path_passes):",

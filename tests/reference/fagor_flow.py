@@ -17,9 +17,9 @@ WORD = re.compile(r"\s*([A-Z])\s*=?\s*(\[|-?\s*P\d+|[-+]?(?:\d+\.?\d*|\.\d+))", 
 class Expression:
     """One expression, by recursive descent: comparisons, sums, products, powers, operands."""
 
-    def __init__(self, text: str, values: dict[str, float]) -> None:
+    def __init__(self, text: str, values: dict[str, float], slip: float = 0.0) -> None:
         self.tokens = TOKEN.findall(text.upper())
-        self.values, self.at = values, 0
+        self.values, self.at, self.slip = values, 0, slip
 
     def take(self, *wanted: str) -> str:
         if self.at < len(self.tokens) and self.tokens[self.at] in wanted:
@@ -89,8 +89,8 @@ class Expression:
         if name == "ARG":
             return math.degrees(math.atan2(given[1], x)) % 360.0
         return {
-            "SIN": lambda: math.sin(math.radians(x)),
-            "COS": lambda: math.cos(math.radians(x)),
+            "SIN": lambda: math.sin(math.radians(x)) * (1.0 + self.slip),
+            "COS": lambda: math.cos(math.radians(x)) * (1.0 + self.slip),
             "ATAN": lambda: math.degrees(math.atan(x)),
             "ABS": lambda: abs(x),
             "SQRT": lambda: math.sqrt(x),
@@ -99,9 +99,13 @@ class Expression:
 
 
 class Program:
-    """Executes lines; `moves` are the places in which moves end, and the centres of arcs."""
+    """Executes lines; `moves` are the places in which moves end, and the centres of arcs.
 
-    def __init__(self, text: str) -> None:
+    `slip`: by which part sines and cosines come out too large, to see what hangs on their last bit.
+    """
+
+    def __init__(self, text: str, slip: float = 0.0) -> None:
+        self.slip = slip
         self.lines = [re.sub(r";.*", "", line).strip() for line in text.upper().splitlines()]
         self.values: dict[str, float] = {}
         self.at = {"X": 0.0, "Y": 0.0, "Z": 0.0}
@@ -114,7 +118,7 @@ class Program:
         self.run(names[-1] + 1)
 
     def value(self, text: str) -> float:
-        return Expression(text, self.values).relation()
+        return Expression(text, self.values, self.slip).relation()
 
     def run(self, line: int) -> None:
         """Execute lines up to the end, or to what returns."""
