@@ -284,7 +284,9 @@ def test_unknown_names() -> None:
         registry.dialect("fanucc", place)
     (found,) = caught.value.diagnostics
     assert (found.code, found.where) == ("GX703", place)
-    assert found.hint.startswith("did you mean 'fanuc'?; known: brother, centroid, fagor, fanuc")
+    assert found.hint.startswith(
+        "did you mean 'fanuc'?; known: brother, centroid, edingcnc, fagor, fanuc"
+    )
     with pytest.raises(UsageError) as caught:
         registry.pass_("nothing", place)
     (found,) = caught.value.diagnostics

@@ -16,6 +16,7 @@ from gcxform.flow.executed import CalledFile
 from gcxform.flow.lookup import Folders, Found
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.modal.meaning.printed import is_output, prints_values
+from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.reader import WindowReader
 from gcxform.syntax.tree import Block, Comment, Expression, Mark, Number, Statement, Word
 from gcxform.system.distinct import union
@@ -76,7 +77,7 @@ class Listing:
         self.special = np.flatnonzero(special)
         self.codes: frozenset[str] = frozenset()
         self._blocks: dict[int, Block] = {}
-        number = {"G20": 1, "G21": 0}
+        number = {code: NUMBER[code] for code in ("G20", "G21", "G70", "G71")}
         said = [number.get(m.groups.get("units", ""), -1) for m in self.table.meanings]
         self.units = np.array(said, np.int8)[self.window.shape]
 

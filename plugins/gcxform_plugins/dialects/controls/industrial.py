@@ -8,6 +8,8 @@
 | | G100 changes the tool and moves, G77 and G78 tap: refused |
 | Hurco ISNC | P of G4 in s; cycles, G2.4 and G3.4 (arcs in space), G54.1, G5: refused |
 | GSK | P of G4 in ms; M88 as Mitsubishi; no G54.1 |
+| Syntec | P of G4 in ms; G70, G71 are units; M88, M89: coolant through the tool; G120.1, G121: |
+| | smoothing; G54 P7 to P100, M98 H, G10: refused |
 
 | what | Okuma OSP, milling | known from |
 |---|---|---|
@@ -38,6 +40,7 @@ HERE = "it goes to a place of the machine for its block"
 GONE = ("G4", "G49", *(f"G{n}" for n in range(54, 60)))
 HURCO_GONE = ("G54.1", "G54.2", "G54.4", "G5", "G5.1", "G8")
 SPACE = "it cuts an arc in space"
+BY_H = "posts for it call by H"
 
 UNTITLED = replace(Fanuc.program_rule, has_title=False)
 
@@ -67,6 +70,35 @@ class Gsk(Mitsubishi):
         name: code for name, code in Fanuc.codes.items() if name not in ("G54.1", "G54.2", "G54.4")
     }
     offset_rule = replace(Fanuc.offset_rule, g10_l20="")
+
+
+class Syntec(Fanuc):
+    """Syntec, milling, as a post writes for it."""
+
+    name = "syntec"
+    kin = "fanuc"
+    program_rule = UNTITLED
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{n: code for n, code in Fanuc.codes.items() if not n.startswith(("G54.", "G10"))},
+        **{code: gx.Code("units") for code in ("G70", "G71")},
+        **{code: v.inert("look-ahead", "PQ", act="look-ahead") for code in ("G120.1", "G121")},
+    }
+    m_codes: ClassVar[Mapping[int, gx.MCode]] = {
+        **Fanuc.m_codes,
+        **{code: gx.MCode("coolant") for code in (88, 89)},
+        98: gx.MCode("stop", after=True, barrier=BY_H, takes="PLH"),
+    }
+    offset_rule = replace(Fanuc.offset_rule, g10_l20="")
+    chosen: ClassVar[Mapping[str, str]] = {
+        **Fanuc.chosen,
+        **dict.fromkeys(("G20", "G21"), "G20 and G21 as on a Fanuc: posts write G70 and G71"),
+    }
+    differs: ClassVar[Mapping[str, str]] = {
+        "G70": "it is inches (post)",
+        "G71": "it is millimetres (post)",
+        "G120.1": "smoothing (post)",
+        "G121": "no smoothing (post)",
+    }
 
 
 class Brother(Fanuc):

@@ -1,4 +1,4 @@
-"""Controls on a PC, milling: Mach3, Mach4, UCCNC, Masso, Centroid.
+"""Controls on a PC, milling: Mach3, Mach4, UCCNC, Masso, Centroid, PlanetCNC, EdingCNC.
 
 *Post*: what published post-processors write (Autodesk's and FreeCAD's); *page*: the maker's own
 page. What is only recalled is refused, or a setting.
@@ -22,6 +22,19 @@ page. What is only recalled is refused, or a setting.
 | G49 H0 | refused | refused | refused | is G49 (post) |
 | comments | `(`; Mach4 also `;`; `(MSG,` shows | `(` | `(` | `;` |
 | G64 | blends | not known: refused | refused | G64 alone |
+
+| what | PlanetCNC TNG | EdingCNC |
+|---|---|---|
+| known from | its post, which takes in Autodesk's for LinuxCNC | what people recall, and a note |
+| I, J, K | from the start (post) | a setting, until G90.1 or G91.1 |
+| G4 P | s (post) | it stays |
+| G53 | read, alone or behind G0 (post) | behind G0 it may not be heard (a note): refused |
+| work offsets | G54 to G59.3 (post) | G54 to G59 |
+| tool length | G43 H (post) | refused |
+| cycles | stay | stay |
+| G10, G52, G92, G28, G30 | refused | refused |
+| O-words, `gosub`, `#<name>`, `(dlg` | refused | refused |
+| M6, other M codes | run a script that may move | as PlanetCNC |
 """
 
 from __future__ import annotations
@@ -38,6 +51,9 @@ RECALLED = "it shifts the coordinates, in a way that no post for this control sh
 SWITCHES = "it moves to the switches"
 UNIT = "it changes the unit on some controls, and cuts on others"
 POCKET = "it cuts a pocket in a way of its own"
+TELLS = ("MSG,", "PRINT,")
+NOT_HEARD = "behind G0 it is not heard, as a note on a rework says"
+LENGTHS = "it is recalled alone, and no post shows it"
 SEMICOLON = ("gcxform_grammars", "centroid")
 COMP = {code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")}
 DWELL_UNIT = "P counts seconds or milliseconds, as a setting says (post): it stays as it is"
@@ -148,6 +164,43 @@ class Masso(Uccnc):
         **cycles(84),
     }
     differs: ClassVar[Mapping[str, str]] = {"G4": DWELL_UNIT, **Uccnc.differs}
+
+
+class PlanetCnc(Uccnc):
+    """PlanetCNC TNG, milling, as its post writes."""
+
+    name = "planetcnc"
+    grammar = SEMICOLON
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **{n: code for n, code in Uccnc.codes.items() if n not in ("G33.1", "G33.2")},
+        **cycles(84),
+        **{f"G59.{n}": v.frame("frame", "work") for n in (1, 2, 3)},
+        "G64": v.inert("path", "PQ", "PQ", act="blend"),
+    }
+    differs: ClassVar[Mapping[str, str]] = {
+        **STEPS,
+        "G64": "its P is a tolerance, as that of LinuxCNC (post)",
+        "point_rule.dwell": "P of G4 is in s, as that of LinuxCNC (post)",
+    }
+    text_rule = gx.TextRule(comments="(;", active_comments=(*TELLS, "DLG"), telling_comments=TELLS)
+    point_rule = gx.PointRule(dwell={"P": 1.0})
+    arc_rule = gx.ArcRule(absolute=0.002)
+
+
+class EdingCnc(Mach3):
+    """EdingCNC (USBCNC), milling: what is recalled of it stays, or is refused."""
+
+    name = "edingcnc"
+    grammar = SEMICOLON
+    codes: ClassVar[Mapping[str, gx.Code]] = {
+        **Masso.codes,
+        "G28": Uccnc.codes["G28"],
+        "G43": v.barrier("tool-length", LENGTHS, "H"),
+        "G53": v.barrier("non-modal", NOT_HEARD),
+    }
+    differs: ClassVar[Mapping[str, str]] = Masso.differs
+    text_rule = gx.TextRule(comments="(;")
+    arc_rule = gx.ArcRule(absolute=0.002, centres_open=True)
 
 
 class Centroid(Uccnc):
