@@ -84,7 +84,7 @@ class Copying:
         if self.path.folded:
             self.lines[self.task.table.flag("framing", self.task.shape)] = False
         self.lines &= ~self.task.table.flag("switches", self.task.shape)
-        self.lines &= ~self._pointed()
+        self.lines &= ~self._pointed() & ~self._said_otherwise()
         if self.path.blocks.uncompensated:
             self.lines &= ~self.task.table.flag("compensates", self.task.shape)
         self.lines[pieces.line[stated.repaired]] = False
@@ -198,6 +198,14 @@ class Copying:
         shapes = self.task.table.shapes.shapes
         empty = np.array([not shape.block.items for shape in shapes], np.bool_)
         return np.asarray(empty[self.task.shape])
+
+    def _said_otherwise(self) -> Flags:
+        """Return the lines with codes of which the user has said what takes their place."""
+        saying, meanings = self.task.manner.saying, self.task.table.meanings
+        if saying.crosses or not (saying.m_codes or saying.drop):
+            return np.zeros(len(self.task.shape), np.bool_)
+        other = [any(saying.instead(e.what) != e.what for e in each.events) for each in meanings]
+        return np.asarray(np.array(other, np.bool_)[self.task.shape])
 
     def _pointed(self) -> Flags:
         """Return the lines whose I, J, K are the tool axis: a pass has made angles of them."""

@@ -169,7 +169,8 @@ class _Job:
         """Return the pieces of lines of which nothing is left to write in the target dialect."""
         task = self.task
         switches = task.table.flag("switches", task.shape).any()
-        if not task.manner.crossing and not self.path.folded and not switches:
+        says = task.manner.crossing or task.manner.saying.drop
+        if not says and not self.path.folded and not switches:
             return np.zeros(len(self.pieces.line), np.bool_)
         work = self.path.frames[0].work if self.path.folded else ""
         gone = self._of_shapes(lambda items, m: nothing_left(items, m, task.manner, work))

@@ -335,7 +335,8 @@ class Plan:
     @property
     def copies(self) -> bool:
         """Whether there is nothing to do but to copy."""
-        return not self.path_passes and self.source is self.target
+        otherwise = self.m_codes or self.drop
+        return not self.path_passes and self.source is self.target and not otherwise
 
     def rounding(self, inch: bool = False) -> float:
         """Return the largest distance (mm) that rounding alone can make, for blocks in a unit.

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
 
 import numpy as np
 
@@ -74,7 +75,18 @@ class EventProof:
         there = [self._as_there(event, path) for event in told if saying.instead(event.what)]
         codes = self.context.source.codes
         home = {e.line for e in told if e.what in codes and codes[e.what].act == HOME}
-        return tuple(_machine_last(there, saying.machine, home))
+        return tuple(_machine_last(self._afterwards(there), saying.machine, home))
+
+    def _afterwards(self, there: list[Event]) -> list[Event]:
+        """Return events in which a code that the user has said acts last in its block, if it does.
+
+        A block with a move has such a code behind its rows, and what came before them is not moved.
+        """
+        known = self.context.target.m_codes
+        said = {int(name[1:]) for name in self.context.saying.m_codes.values()}
+        late = {f"M{number}" for number in said if number in known and known[number].after}
+        blocks = groupby(there, key=lambda event: (event.line, event.row))
+        return [each for _, block in blocks for each in sorted(block, key=lambda e: e.what in late)]
 
     def _without_feeds_in_machine(
         self, told: tuple[Event, ...], path: Toolpath

@@ -13,6 +13,34 @@ ACROSS = "tests/test_corpus.py::test_case[dialects/across"
 
 MUTATIONS = (
     Mutation(
+        "saying: M codes of one control are copied",
+        "gcxform/emit/copying.py",
+        "saying.instead(e.what) != e.what for e",
+        "False for e",
+        "tests/test_corpus.py::test_case[text/m-codes-of-one-control]",
+    ),
+    Mutation(
+        "saying: what the user says of M codes is nothing to do",
+        "gcxform/pipeline/plan.py",
+        "otherwise = self.m_codes or self.drop",
+        "otherwise = False",
+        "tests/test_corpus.py::test_case[text/m-codes-of-one-control]",
+    ),
+    Mutation(
+        "saying: a line of which nothing is left stays empty on one control",
+        "gcxform/emit/emitter.py",
+        "task.manner.crossing or task.manner.saying.drop",
+        "task.manner.crossing",
+        "tests/test_corpus.py::test_case[text/m-codes-of-one-control]",
+    ),
+    Mutation(
+        "saying: a stop that stands for a change is looked for before what is beside it",
+        "gcxform/proof/events.py",
+        "key=lambda e: e.what in late",
+        "key=lambda e: False",
+        "tests/test_corpus.py::test_case[dialects/across/stop-beside-length]",
+    ),
+    Mutation(
         "saying: a feed in the machine keeps its G53 where that is a rapid",
         "gcxform/dialect/code_translation.py",
         "there.g53_is_rapid and not here.g53_is_rapid",
