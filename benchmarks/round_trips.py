@@ -34,6 +34,8 @@ from gcxform.contract.inert_codes import with_inert
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain_text import parse_chain
 from gcxform.pipeline.pipeline import Pipeline, Result
+from gcxform.pipeline.translated_moves import CHORD_ERROR
+from gcxform.pipeline.translated_moves import SAID as SPLINES
 from gcxform.plugin.registry import default_registry
 from gcxform.toolpath.path import Toolpath
 
@@ -52,7 +54,7 @@ CONTROL = {
 """What a user knows of each control: on a mill lengths stay along Z (SD42940), and none of them
 moves an axis by itself; F is in the unit of the program."""
 LONGEST = 200_000  # bytes
-SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|said as|a comment)")
+SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|a comment|said as (\S+))")
 OUTPUT = ("drop", "inert")
 """What a user gives of the output where a hint offers it."""
 TOLERANCE = 0.002  # mm: twice what a program is rounded by
@@ -93,9 +95,11 @@ def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
     anew = replace(made, source=there, target=here, passes=tuple(chain), numbers=NUMBERS)
     _, back = by_hints(replace(anew, reading=bare), said.text, ways)
     texts = (job.text, here, reading), (said.text, there, bare), (back.text, here, bare)
-    programs = [gx.Program(*each) for each in texts]
+    programs = [gx.Program(text, kind, replace(of, curves=True)) for text, kind, of in texts]
+    lines = SPLINES in (*said.certificate.assumed, *back.certificate.assumed)
+    near = TOLERANCE + CHORD_ERROR * lines
     for one, other in itertools.pairwise(programs):
-        if why := apart(one, other, told(said, back)):
+        if why := apart(one, other, told(said, back), near):
             return Outcome(job, "DIFFERS", f"{one.dialect.name} to {other.dialect.name}: {why}")
     return Outcome(job)
 
@@ -139,14 +143,14 @@ def _bare(reading: Reading, control: Mapping[str, str]) -> Reading:
 def told(*results: Result) -> set[str]:
     """Return the names of codes that certificates list as said otherwise."""
     said = (SAID.match(line) for result in results for line in result.certificate.assumed)
-    return {found[1] for found in said if found}
+    return {name for found in said if found for name in found.groups() if name}
 
 
-def apart(one: gx.Program, other: gx.Program, but: set[str]) -> str:
+def apart(one: gx.Program, other: gx.Program, but: set[str], near: float) -> str:
     """Return how two programs differ; nothing where they are the same but for some codes."""
     for program in (one, other):
         vars(program)["path"] = _without(program.path, but)
-    found = gx.compare(one, other, TOLERANCE)
+    found = gx.compare(one, other, near)
     if found.same:
         return ""
     first = [each.what for each in (*found.feeds, *found.events, *found.places)][:1]

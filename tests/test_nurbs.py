@@ -77,3 +77,14 @@ def test_what_linuxcnc_refuses_is_refused() -> None:
 @pytest.mark.parametrize("text", REFUSED_HERE)
 def test_what_is_not_certain_is_refused(text: str) -> None:
     assert refused(text)
+
+
+def test_a_spline_is_compared_as_the_curve_it_is() -> None:
+    """The legs between its control points are as far from it as the polygon is."""
+    program = f"{HEAD}G1 F100\nG5.2 X0 Y1 P1\n{THREE}M2\n".encode()
+    made = gx.Pipeline.parse("segment chord-error=1um", "linuxcnc").run(program).text
+    one, lines = gx.read(program, "linuxcnc"), gx.read(made, "linuxcnc")
+    assert gx.compare(one, lines).deviation < 0.002
+    moved = made.replace(b"X3. Y0.", b"X3. Y0.05")
+    assert moved != made
+    assert gx.compare(one, gx.read(moved, "linuxcnc")).deviation > 0.02

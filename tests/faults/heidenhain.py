@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: an arc that names the height at which it stands is a helix",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        'if axis in "XY" or not self._stays(axis, to)}',
+        "}",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-arc-with-its-height]",
+    ),
+    Mutation(
         "klartext: a feed behind a cycle is not said again",
         DRILLING,
         "elif self.owed and CUTS.match(bare):",

@@ -251,6 +251,7 @@ class Lines(gx.Speller):
             return
         by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
         pole = {axis: self.place[axis] + by[axis] for axis in "XY"}
+        ends = {axis: to for axis, to in ends.items() if axis in "XY" or not self._stays(axis, to)}
         if set(ends) <= {"X", "Y"} and turns == 1 and not (self.rounded and self._whole(ends)):
             yield f"CC{_words(pole)}"
             yield f"C{self._line(ends)}{sense}{feed}"
@@ -273,6 +274,11 @@ class Lines(gx.Speller):
         self.rounded |= {a: v - float(self.place[a]) for a, v in zip("XY", there, strict=True)}
         yield f"CC{_words(dict(zip('XY', centre, strict=True)))}"
         yield f"CP IPA{_signed(angle)}{words}{how}"
+
+    def _stays(self, axis: str, value: Decimal) -> bool:
+        """Whether the word of an axis leads to where it stands."""
+        here = not self.rounded.get(axis) and (self.steps or axis in self.place)
+        return here and value == self._still(axis)
 
     def _stands(self) -> Point:
         """Return where X and Y really stand."""
