@@ -60,6 +60,9 @@ FROM_HOME = "G21 G17 G90 G94\nG0 X50 Y10 Z0\nG28 X50 Z5\nG1 X50 F100\nM2\n"
 INTO_G53 = "G21 G17 G90 G94\nG0 X0 Y0 Z0\nG53 G1 X50 F100\nM2\n"
 
 
+LENGTHENED = "G21 G17 G90 G94\nG0 X0 Y0 Z0\nG43.1 Z20\n"
+
+
 def model() -> AxisFunctions:
     """Return errors up to 60 um that depend on every axis."""
     random = np.random.default_rng(11)
@@ -140,6 +143,17 @@ def test_without_that_refusal_the_proof_sees_it(program, monkeypatch):
     without_checks(monkeypatch)
     with pytest.raises(VerificationError, match="off, the budget"):
         run(Volumetric(model=MODEL), program)
+
+
+@pytest.mark.parametrize("cut", ["G1 X50 F100", "F100 G2 X10 I5"])
+def test_a_jump_in_the_tables_is_seen_by_the_proof_alone(cut, monkeypatch):
+    """The tip is in the tables: behind another length it is elsewhere, and nothing has moved."""
+    step, program = Volumetric(model=MODEL, part_origin=(0.0, 0.0, 0.0)), f"{LENGTHENED}{cut}\nM2\n"
+    with pytest.raises(InputError, match="GX317"):
+        run(step, program)
+    without_checks(monkeypatch)
+    with pytest.raises(VerificationError, match="off, the budget"):
+        run(step, program)
 
 
 LAST = 15  # line, from 0, of the last of the moves that cut

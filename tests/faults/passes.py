@@ -53,6 +53,13 @@ MUTATIONS = (
         FIGURES,
     ),
     Mutation(
+        "undo: a jump in the tables at the start of a cut is not looked at",
+        "plugins/gcxform_plugins/passes/volumetric/undo/machine.py",
+        "jumps & cuts & path.starts_known",
+        "jumps & ~jumps",
+        "tests/test_planted_volumetric.py::test_a_jump_in_the_tables_is_seen_by_the_proof_alone",
+    ),
+    Mutation(
         "undo: the sign of the error is swapped",
         "plugins/gcxform_plugins/passes/volumetric/undo/machine.py",
         "return self.step.error(table, tool)",

@@ -32,6 +32,7 @@ from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond_tables, check_inside
 
 NO_WAY = 1e-12  # of a move; two cuts nearer to each other are one
+AT_ONCE = 1e-9  # of a move: where one is looked at that begins with a jump
 UNDO_SLACK = 2e-6  # mm; how far pieces of an undone arc are from the curve they stand for
 BEND_SLACK = 1e-5  # mm; the same for pieces of a line, and what the bending adds to an arc
 
@@ -138,7 +139,21 @@ class Machine:
                 path, self.offset, self.step.nodes(), self.lipschitz, bend, UNDO_SLACK
             )
             row, part = np.append(row, arc_row), np.append(part, arc_part)
-        return row, part
+        begins = self._jumping()
+        return np.append(row, begins), np.append(part, np.full(len(begins), AT_ONCE))
+
+    def _jumping(self) -> Ints:
+        """Return the feed rows that begin behind another length or offset, with no move between.
+
+        A path has one place between two rows, which is that of the row before: so these have a cut
+        at their beginning, where the machine is off as it is at other points of theirs.
+        """
+        path = self.path
+        if len(self.offset) == 1:
+            return np.empty(0, np.int64)
+        jumps = np.append(False, (np.diff(self.offset, axis=0) != 0.0).any(axis=1))
+        cuts = (path.kind != gx.Kind.RAPID) & np.isin(path.form, gx.FREE)
+        return np.flatnonzero(jumps & cuts & path.starts_known)
 
     def _bends(self, lines: Ints) -> tuple[Ints, Floats]:
         """Return row and part of the way where lines cross a node."""
