@@ -26,12 +26,15 @@ from gcxform.notebook import drawn, shown
 from gcxform.pipeline.pipeline import Result
 from gcxform.plugin.registry import default_registry, dialect_of
 from gcxform.syntax.source import Source, program_of
+from gcxform.system.distinct import one_of
 from gcxform.system.files import write_atomically
 from gcxform.toolpath.columns import COLUMNS
 from gcxform.toolpath.drawn import strokes
-from gcxform.toolpath.path import BLOCK_MODES, Toolpath
+from gcxform.toolpath.path import BLOCK_MODES, Form, Toolpath
 from gcxform.values import dataclass
 
+AROUND = (Form.NURBS, Form.TILTED)
+"""Legs between control points."""
 SHOWN = 400  # characters of a program that a notebook shows
 
 
@@ -69,6 +72,13 @@ class Program:
             return self._read(source)
         except InputError as error:
             raise located(error, source) from None
+
+    @cached_property
+    def curved(self) -> Toolpath:
+        """The moves, with curves in place of the legs between control points that they stay in."""
+        if not one_of(self.path.form, AROUND).any():
+            return self.path
+        return replace(self, reading=replace(self.reading, curves=True)).path
 
     @cached_property
     def _executed(self) -> Source:

@@ -20,7 +20,6 @@ from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.meaning import FRAMING
 from gcxform.system.arrays import Flags, Floats, Ints, Small
-from gcxform.system.distinct import one_of
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import (
     WHOLE,
@@ -33,8 +32,6 @@ from gcxform.toolpath.path import (
 from gcxform.toolpath.splines import straightened
 from gcxform.values import dataclass
 
-AROUND = (Form.NURBS, Form.TILTED)
-"""Legs of which it is only known that a curve stays in their hull."""
 STRAIGHT = 1e-5  # mm; lines that stand for splines are so near
 TOLERANCE = 0.001  # mm: twice what rounding an axis to three decimals can do
 REACH = 1.0  # mm; what is farther apart is not taken for the same place
@@ -105,7 +102,7 @@ def compare(
     for one in (a, b):
         arguments.instance("program", one, Program, "a program, as `read` returns it")
     tolerance = arguments.positive("tolerance", tolerance)
-    path_a, path_b = same_axes(_curved(a), _curved(b))
+    path_a, path_b = same_axes(a.curved, b.curved)
     left = _Left(path_b, path_b, np.zeros(len(path_b), np.bool_))
     if through is not None:
         numbers = b.dialect.numbers
@@ -361,15 +358,6 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     if plainly:
         silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
     return [event for event in path.events if event.what not in silent]
-
-
-def _curved(program: Program) -> Toolpath:
-    """Return the path of a program, in which curves that stand as legs around them are curves."""
-    path = program.path
-    if not one_of(path.form, AROUND).any():
-        return path
-    curves = replace(program, reading=replace(program.reading, curves=True))
-    return curves.path
 
 
 def _difference(one: Event | None, other: Event | None) -> str:
