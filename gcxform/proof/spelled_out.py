@@ -64,7 +64,8 @@ def check_spelled_out(
         where = Location(found.name, line, 1, text, max(1, len(text)))
         code, hint = ("GX501", CALLED) if what is LENGTH else ("GX601", HINT)
         message = what if what is LENGTH else f"what was written is another program: {what}"
-        raise VerificationError((Diagnostic(code, message, where, hint),))
+        kind = InputError if what is LENGTH else VerificationError
+        raise kind((Diagnostic(code, message, where, hint),))
 
 
 def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> Toolpath:
