@@ -76,7 +76,7 @@ def run(lines: list[str]) -> list[Row]:
                 rows.append(Row(kind, second, centre, own))
                 continue
             first, second = said - unit(said - begin) * size, said + unit(to - said) * size
-            if size > min(abs(said - begin), abs(to - said)):
+            if size > min(abs(said - begin), abs(to - said)) + 1e-9:  # all of a line may go
                 raise DoubtfulError
             rows[-1].end = first
             rows.append(Row(LINE, second, None, own))
@@ -88,7 +88,8 @@ def run(lines: list[str]) -> list[Row]:
         start = rows[-1].end if rows else 0j
         to = place(line, said)
         if name == "L":
-            along = unit(to - start)
+            if abs(to - start) > 1e-9 or not rows:  # a chamfer may have taken all of it
+                along = unit(to - start)
             rows.append(Row(LINE, to, None, feed))
         elif name == "C":
             kind = LEFT if "DR+" in line else RIGHT
