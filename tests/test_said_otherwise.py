@@ -145,6 +145,12 @@ def test_m_codes_that_the_target_lacks():
         gx.Pipeline(DIALECTS["fanuc"], DIALECTS["grbl"], (), START, m_codes={"M8": "M6"})
 
 
+@pytest.mark.parametrize("code", ["M30", "M98", "M99"])
+def test_m_codes_that_stand_for_no_other(code):
+    with pytest.raises(gx.UsageError, match="ends or calls a program"):
+        gx.Pipeline(DIALECTS["fanuc"], DIALECTS["fanuc"], (), START, m_codes={"M8": code})
+
+
 def test_messages_become_comments():
     lines, told = said("linuxcnc", "fanuc", "(MSG, HELLO)\n(DEBUG, #<_line>)\nG0 X1.")
     assert lines == ["(MSG, HELLO)", "(DEBUG, #<_line>)", "G0 X1."]

@@ -90,6 +90,10 @@ class Saying:
         for name in self.m_codes.values():
             if int(name[1:]) not in known and self.target.block_rule.unknown_m is None:
                 raise diagnostics.UsageError.one("GX707", f"{self.target.name} has no code {name}")
+            code = known.get(int(name[1:]))
+            if code is not None and (code.ends or code.barrier):
+                message = f"{name} of {self.target.name} ends or calls a program"
+                raise diagnostics.UsageError.one("GX707", message)
 
     def _may_go(self, name: str) -> bool:
         if name in (LASTING, EXECUTED):

@@ -43,7 +43,7 @@ def own_blocks(task: Task, count: Ints) -> tuple[list[Given], list[Given]]:
     """
     before: list[Given] = []
     behind: list[Given] = []
-    if not task.manner.crossing:
+    if not (task.manner.crossing or task.manner.saying.m_codes):
         return before, behind
     said: dict[int, tuple[str, str]] = {}
     ends: dict[int, str] = {}

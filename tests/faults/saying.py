@@ -13,6 +13,20 @@ ACROSS = "tests/test_corpus.py::test_case[dialects/across"
 
 MUTATIONS = (
     Mutation(
+        "saying: an M code may become the end of the program",
+        "gcxform/dialect/code_translation.py",
+        "code is not None and (code.ends or code.barrier)",
+        "False",
+        "tests/test_said_otherwise.py::test_m_codes_that_stand_for_no_other",
+    ),
+    Mutation(
+        "saying: M codes of another order share a block on one control",
+        "gcxform/emit/own_blocks.py",
+        "task.manner.crossing or task.manner.saying.m_codes",
+        "task.manner.crossing",
+        "tests/test_corpus.py::test_case[text/m-codes-of-another-order]",
+    ),
+    Mutation(
         "saying: M codes of one control are copied",
         "gcxform/emit/copying.py",
         "saying.instead(e.what) != e.what for e",
