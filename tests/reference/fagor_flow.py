@@ -89,8 +89,8 @@ class Expression:
         if name == "ARG":
             return math.degrees(math.atan2(given[1], x)) % 360.0
         return {
-            "SIN": lambda: math.sin(math.radians(x)) * (1.0 + self.slip),
-            "COS": lambda: math.cos(math.radians(x)) * (1.0 + self.slip),
+            "SIN": lambda: math.sin(math.radians(x * (1.0 + self.slip))) * (1.0 + self.slip),
+            "COS": lambda: math.cos(math.radians(x * (1.0 + self.slip))) * (1.0 + self.slip),
             "ATAN": lambda: math.degrees(math.atan(x)),
             "ABS": lambda: abs(x),
             "SQRT": lambda: math.sqrt(x),
@@ -101,7 +101,8 @@ class Expression:
 class Program:
     """Executes lines; `moves` are the places in which moves end, and the centres of arcs.
 
-    `slip`: by which part sines and cosines come out too large, to see what hangs on their last bit.
+    `slip`: by which part sines and cosines, and their angles, are too large, to see what hangs on
+    their last bit.
     """
 
     def __init__(self, text: str, slip: float = 0.0) -> None:
