@@ -34,23 +34,23 @@ def respelled(
     new: dict[int, str] = {}
     changes: dict[int, bool] = {}
     whole, translator = source.text.splitlines(), source.translator
+    counting = translator.counting_lines() if absolute else frozenset[int]()
+    at_stake = _changing(source, whole, blocks) | counting
+    if not at_stake:
+        return given
     speller = _Spelling(translator, whole)
-
-    def is_kept(block: bytes) -> bool:
-        return translator.kept.encode() in block.split()
-
     for line, first, stop in _runs(source):
-        made = [b.rstrip(b"\r\n") for block in blocks[first:stop] for b in block]
+        speller.met(blocks[first:stop])
+        if line not in at_stake:
+            continue
+        made = _ends_off(blocks[first:stop])
         raw = source.lines[line]
         text: str | None = raw
-        speller.met(made)
-        stepped = absolute and translator.counts(raw) and not any(map(is_kept, made))
+        stepped = line in counting and not _is_kept(translator.kept, made)
         changed = made != whole[first:stop]
         changes[line] = changes.get(line, False) or changed
         if changed or stepped:
-            text = translator.spelled(line, [each.decode("latin-1") for each in made])
-            said = speller.said() if text is None else []
-            text = translator.replaced(line, said) if said else text
+            text = _anew(translator, speller, line, made)
             text = raw if text is None and not changed else text
         if text != raw and not translator.is_own(line):
             raise _refusal(source, line, "this line would change, and stands in another program")
@@ -78,10 +78,10 @@ class _Spelling:
         replaces = type(translator).replaced is not Translator.replaced
         kind = translator.speller if replaces else None
         self.speller = None if kind is None else kind("", inch_first(blocks, False))
-        self.waiting: list[list[bytes]] = []
+        self.waiting: list[list[list[bytes]]] = []
 
-    def met(self, blocks: list[bytes]) -> None:
-        """Take note of the blocks of a line."""
+    def met(self, blocks: list[list[bytes]]) -> None:
+        """Take note of what the blocks of a line became."""
         if self.speller is not None:
             self.waiting.append(blocks)
 
@@ -89,7 +89,7 @@ class _Spelling:
         """Return lines for the last blocks; nothing where the language has no words for them."""
         found: list[str] = []
         for blocks in self.waiting:
-            found = self._said(blocks)
+            found = self._said(_ends_off(blocks))
         self.waiting.clear()
         return found
 
@@ -102,6 +102,32 @@ class _Spelling:
         except UnspeakableError:
             self.speller.lose()
             return []
+
+
+def _anew(translator: Translator, speller: _Spelling, line: int, made: list[bytes]) -> str | None:
+    """Return a line for what its blocks became; None where it cannot be said."""
+    text = translator.spelled(line, [each.decode("latin-1") for each in made])
+    said = speller.said() if text is None else []
+    return translator.replaced(line, said) if said else text
+
+
+def _is_kept(code: str, blocks: list[bytes]) -> bool:
+    return any(code.encode() in block.split() for block in blocks)
+
+
+def _ends_off(blocks: list[list[bytes]]) -> list[bytes]:
+    """Return the lines of blocks without what ends them."""
+    return [line.rstrip(b"\r\n") for block in blocks for line in block]
+
+
+def _changing(source: Translated, whole: list[bytes], blocks: list[list[bytes]]) -> frozenset[int]:
+    """Return the lines of which a block became another, at least once."""
+    blocks_changed = [
+        k
+        for k, (was, made) in enumerate(zip(whole, blocks, strict=True))
+        if len(made) != 1 or (made[0] != was and made[0].rstrip(b"\r\n") != was)
+    ]
+    return frozenset(source.origin[blocks_changed].tolist())
 
 
 def _runs(source: Translated) -> Iterator[tuple[int, int, int]]:

@@ -15,8 +15,9 @@ from __future__ import annotations
 import re
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from types import FunctionType
-from typing import Any, NoReturn, Protocol
+from typing import Any, NamedTuple, NoReturn, Protocol
 
 from gcxform.flow.items import Item, Part
 from gcxform.values import dataclass
@@ -24,6 +25,7 @@ from gcxform.values import dataclass
 MARK = re.compile("\ue000([0-9]+)\ue001")
 MOST = 4096  # steps that are kept
 BEFORE = 1_000_000  # slots from here on are places of axes before the line
+FEW = 8  # lines of which all are looked at for where axes are told to be
 ANY, CODE, DIGITS = "any", "code", "digits"
 """What the numbers of an item may be: any; those of this very line; any that have digits alone."""
 Numbers = Sequence[str]
@@ -85,11 +87,16 @@ class Slots:
 
 @dataclass(eq=False, slots=True)
 class Step:
-    """What a line becomes: templates with the slots in them, ends of axes, and what is behind."""
+    """What a line becomes: templates with the slots in them, ends of axes, and what is behind.
+
+    `in_order` is the template of the only block, for all numbers of the line in their order, of
+    which some are not shown; nothing where there is no such template.
+    """
 
     blocks: tuple[tuple[str, tuple[int, ...]], ...]
     ends: tuple[tuple[str, int], ...]
     behind: Node
+    in_order: str
 
     def said(self, numbers: Numbers) -> list[str]:
         """Return the blocks of a line."""
@@ -117,6 +124,23 @@ class Learner(Protocol):
     def blocks(self, items: Sequence[Item]) -> Any: ...  # noqa: D102
 
 
+class Ahead(NamedTuple):
+    """Lines that were split at once: `keys` without numbers; those of each begin at `starts`."""
+
+    keys: Sequence[str]
+    numbers: Numbers
+    starts: Sequence[int]
+
+
+class Learnt(Hashable, Protocol):
+    """What is asked of the shape of a line."""
+
+    @property
+    def steady(self) -> bool: ...  # noqa: D102
+    @property
+    def slots(self) -> Any: ...  # noqa: D102
+
+
 class Learned:
     """The steps of one translator, and where among them it is.
 
@@ -137,12 +161,50 @@ class Learned:
         if node is None:
             return None
         step = node.steps.get(_name(shape, slots, numbers))
-        if step is None or not all([numbers[k].isdigit() for k in slots.digits]):
+        if step is None or not _fits(slots, numbers):
             return None
         for axis, slot in step.ends:
             self.ends[axis] = numbers[slot]
         self.node = step.behind
         return step.said(numbers)
+
+    def stretch(self, ahead: Ahead, lines: range, shapes: Mapping[str, Learnt]) -> list[str]:
+        """Return the blocks of lines that are known and have one each, up to the first that is not.
+
+        It goes on behind them.
+        """
+        keys, numbers, starts = ahead
+        node, steps = self.node, list[Step]()
+        for line in lines:
+            shape = shapes.get(keys[line])
+            if node is None or shape is None or not shape.steady:
+                break
+            at, slots = starts[line], shape.slots
+            step = node.steps.get(_name(shape, slots, numbers, at))
+            if step is None or not step.in_order or not _fits(slots, numbers, at):
+                break
+            steps.append(step)
+            node = step.behind
+        if not steps:
+            return []
+        self.node = node
+        behind = lines.start + len(steps)
+        self._tell(steps, starts[lines.start : behind], numbers)
+        given = tuple(numbers[starts[lines.start] : starts[behind]])
+        return ("\n".join([step.in_order for step in steps]) % given).split("\n")
+
+    def _tell(self, steps: Sequence[Step], starts: Sequence[int], numbers: Numbers) -> None:
+        """Take note of where axes are told to be behind lines: what the last of each says."""
+        first = 0
+        if len(steps) > FEW:
+            axes = {axis for step in {*steps} for axis, _ in step.ends}
+            first = len(steps) - 1
+            while first and axes:
+                axes -= {axis for axis, _ in steps[first].ends}
+                first -= 1
+        for step, at in zip(steps[first:], starts[first:], strict=True):
+            for axis, slot in step.ends:
+                self.ends[axis] = numbers[at + slot]
 
     def _entered(self) -> Node | None:
         """Return the node of the state of the translator."""
@@ -171,11 +233,7 @@ class Learned:
         if self.count >= MOST:
             self.nodes, self.count = {}, 0
         node, name = self._entered(), _name(shape, slots, numbers)
-        if (
-            node is None
-            or name in node.steps
-            or not all(numbers[k].isdigit() for k in slots.digits)
-        ):
+        if node is None or name in node.steps or not _fits(slots, numbers):
             return None
         self.count += 1
         node.steps[name] = None
@@ -183,7 +241,7 @@ class Learned:
             numbers[k] if k in slots.codes else (Digits if k in slots.digits else Opaque).of(k)
             for k in range(len(numbers))
         ]
-        step = self._step([part.item(opaque) for part in parts])
+        step = self._step([part.item(opaque) for part in parts], len(numbers))
         return None if step is None else (node, name, step)
 
     def confirm(
@@ -194,7 +252,7 @@ class Learned:
         if step.said(numbers) == [*blocks] and self.translator.key() == step.behind.key:
             node.steps[name] = step
 
-    def _step(self, items: Sequence[Item]) -> Step | None:
+    def _step(self, items: Sequence[Item], count: int) -> Step | None:
         """Return what a line does whose numbers cannot be looked at; None where it looks."""
         translator = self.translator
         owners = {
@@ -209,7 +267,7 @@ class Learned:
                 blocks = [*translator.blocks(items)]
             if not self._is_closed(owners, before, looked):
                 return None
-            return self._made(blocks, axes)
+            return self._made(blocks, axes, count)
         except Exception:  # whatever it is: it is met again when the line is translated
             return None
         finally:
@@ -235,7 +293,7 @@ class Learned:
                     return False
         return True
 
-    def _made(self, blocks: Sequence[str], axes: Sequence[str]) -> Step | None:
+    def _made(self, blocks: Sequence[str], axes: Sequence[str], count: int) -> Step | None:
         """Return the step that was made; None where a place of before went into it."""
         key, ends = self.translator.key(), []
         for axis, text in self.translator.told().items():
@@ -250,7 +308,7 @@ class Learned:
         made = tuple(_template(block) for block in blocks)
         if key is None or any(k >= BEFORE for _, slots in made for k in slots):
             return None
-        return Step(made, tuple(ends), self._node_of(key))
+        return Step(made, tuple(ends), self._node_of(key), _in_order(made, count))
 
 
 def _template(block: str) -> tuple[str, tuple[int, ...]]:
@@ -259,9 +317,29 @@ def _template(block: str) -> tuple[str, tuple[int, ...]]:
     return MARK.sub("%s", block.replace("%", "%%")), slots
 
 
-def _name(shape: Hashable, slots: Slots, numbers: Numbers) -> Hashable:
+def _in_order(blocks: Sequence[tuple[str, tuple[int, ...]]], count: int) -> str:
+    """Return the template of one block for so many numbers, in their order; nothing without it."""
+    if len(blocks) != 1:
+        return ""
+    ((text, slots),) = blocks
+    if not text or "%%" in text or any(a >= b for a, b in pairwise(slots)):
+        return ""
+    left = iter(text.split("%s"))
+    pieces = [next(left)]
+    for k in range(count):
+        pieces.append(f"%s{next(left)}" if k in slots else "%.0s")
+    return "".join(pieces)
+
+
+def _name(shape: Hashable, slots: Slots, numbers: Numbers, at: int = 0) -> Hashable:
+    """Return what lines are called that do the same; their numbers begin `at` a place."""
     codes = slots.codes
-    return (shape, *[numbers[k] for k in codes]) if codes else shape
+    return (shape, *[numbers[at + k] for k in codes]) if codes else shape
+
+
+def _fits(slots: Slots, numbers: Numbers, at: int = 0) -> bool:
+    """Whether the numbers have digits alone that have to."""
+    return not slots.digits or all([numbers[at + k].isdigit() for k in slots.digits])
 
 
 def _kept(values: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:

@@ -9,7 +9,9 @@ from __future__ import annotations
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from dataclasses import field
 from functools import cache
+from itertools import accumulate
 from typing import ClassVar
 
 from lark import Lark, Token
@@ -18,7 +20,7 @@ from lark.exceptions import UnexpectedInput
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.items import Item, Part, part_of
-from gcxform.flow.learned import CODE, DIGITS, Slots
+from gcxform.flow.learned import CODE, DIGITS, Ahead, Slots
 from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
@@ -26,6 +28,7 @@ from gcxform.values import dataclass
 
 COMMENT = "comment"
 LATELY = 4096  # shapes with numbers in names and comments that are kept
+AHEAD, SOME = 512, 64  # lines that are split at once, and how many of such parts are kept
 BRACKETS = str.maketrans("()", "[]")
 
 
@@ -34,7 +37,8 @@ class Shape:
     """The parts of all lines that differ only in their numbers, and their comments.
 
     `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
-    `slots` says what can be learnt of such lines; None if nothing.
+    `slots` says what can be learnt of such lines; None if nothing. Those that are `steady` do what
+    their state says or is not known yet, and nothing beside.
     """
 
     parts: tuple[Part, ...]
@@ -42,6 +46,11 @@ class Shape:
     template: str
     routine: bool = False
     slots: Slots | None = None
+    steady: bool = field(init=False)
+
+    def __post_init__(self) -> None:
+        bare = not (self.comments or self.template or self.routine)
+        self.steady = bare and self.slots is not None
 
     def items(self, numbers: Sequence[str]) -> tuple[Item, ...]:
         """Return the items of a line with these numbers."""
@@ -56,8 +65,8 @@ class LineShapes(ABC):
     grammar: ClassVar[tuple[str, str]]
     """Package and name of the grammar of a line."""
     number: ClassVar[re.Pattern[str]]
-    """What the grammar's terminal NUMBER looks like, without groups; with a look behind it need not
-    match the number of a code, which is then part of a name: `G54`."""
+    """What the grammar's terminal NUMBER looks like, without groups and within a line; with a look
+    behind it need not match the number of a code, which is then part of a name: `G54`."""
 
     def __init__(self, lines: list[str], file: str, dialect: type[Dialect]) -> None:
         self.lines = lines
@@ -69,6 +78,7 @@ class LineShapes(ABC):
         self._shapes: dict[str, Shape] = {}
         self._partly: dict[tuple[str, ...], Shape] = {}
         self._fixed: dict[str, tuple[int, ...]] = {}
+        self._parts_ahead: dict[int, Ahead] = {}
 
     @abstractmethod
     def place_of(self, line: int) -> tuple[str, int]:
@@ -108,9 +118,13 @@ class LineShapes(ABC):
 
         Those in a comment, or in a name, belong to the shape.
         """
-        text = self.lines[line] if text is None else text
-        pieces = self._split(text)
-        found, key = pieces[1::2], SLOT.join(pieces[::2])
+        if text is None:
+            ahead, k = self._split_ahead(line)
+            key = ahead.keys[k]
+            found = list(ahead.numbers[ahead.starts[k] : ahead.starts[k + 1]])
+        else:
+            pieces = self._split(text)
+            found, key = pieces[1::2], SLOT.join(pieces[::2])
         shape = self._shapes.get(key)
         if shape is not None:
             return shape, found
@@ -119,7 +133,21 @@ class LineShapes(ABC):
             shape = self._partly.get((key, *[found[k] for k in fixed]))
             if shape is not None:
                 return shape, [number for k, number in enumerate(found) if k not in fixed]
-        return self._new_shape(line, text, key, found)
+        return self._new_shape(line, self.lines[line] if text is None else text, key, found)
+
+    def _split_ahead(self, line: int) -> tuple[Ahead, int]:
+        """Return some lines, each without its numbers, and with them; which of them is `line`."""
+        part, k = divmod(line, AHEAD)
+        found = self._parts_ahead.get(part)
+        if found is None or k >= len(found.keys):
+            if len(self._parts_ahead) >= SOME:
+                self._parts_ahead.clear()
+            first = part * AHEAD
+            pieces = self._split("\n".join(self.lines[first : first + AHEAD]))
+            keys = SLOT.join(pieces[::2]).split("\n")
+            starts = [*accumulate([key.count(SLOT) for key in keys], initial=0)]
+            found = self._parts_ahead[part] = Ahead(keys, pieces[1::2], starts)
+        return found, k
 
     def _new_shape(
         self, line: int, text: str, key: str, found: list[str]

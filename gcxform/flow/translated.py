@@ -89,13 +89,13 @@ def _run(
     visits: list[int] = []
     lost: dict[int, str] = {}
     try:
-        for line, block in translator.run():
+        for line, found in translator.run():
             if translator.loses:
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()
-            blocks.append(block)
-            origin.append(line)
-            visits.append(translator.visit)
+            blocks += found
+            origin += range(line, line + len(found))
+            visits += range(translator.visit - len(found) + 1, translator.visit + 1)
     except InputError as error:
         return blocks, origin, visits, lost, error
     return blocks, origin, visits, lost, None

@@ -16,7 +16,9 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
+from bisect import bisect_left
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate
 from typing import Any, ClassVar, NoReturn
 
 from gcxform.diagnostics import InputError
@@ -55,6 +57,8 @@ class Translator(LineShapes):
     `learned.py`."""
     fixed: ClassVar[frozenset[str]] = frozenset()
     """Names of what they may hang on and do not change: `key` tells that, or it never changes."""
+    stepped: ClassVar[re.Pattern[str] | None] = None
+    """What stands in each line that `counts`; without it all are asked."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
@@ -135,6 +139,15 @@ class Translator(LineShapes):
         del line
         return False
 
+    def counting_lines(self) -> frozenset[int]:
+        """Return the lines, from 0, that have such words."""
+        if self.stepped is None:
+            return frozenset(k for k, line in enumerate(self.lines) if self.counts(line))
+        ends = [*accumulate(len(line) + 1 for line in self.lines)]
+        found = self.stepped.finditer("\n".join(self.lines))
+        lines = {bisect_left(ends, match.end()) for match in found}
+        return frozenset(line for line in lines if self.counts(self.lines[line]))
+
     # --- files ---
 
     def called_file(self, name: str) -> range | None:
@@ -169,12 +182,20 @@ class Translator(LineShapes):
 
     # --- the walk ---
 
-    def run(self) -> Iterator[tuple[int, str]]:
-        """Yield blocks with the line that each is for, from 0. Raises InputError."""
+    def run(self) -> Iterator[tuple[int, Sequence[str]]]:
+        """Yield blocks with the line that they are for, from 0. Raises InputError.
+
+        Several are those of as many lines that follow upon each other, one for each.
+        """
         left = most = QUICK * limits().steps + len(self.lines)
         while self.at < len(self.lines):
             if self.annexed is not None and self.at in self.annexed.seams:
                 self.at_end()
+                continue
+            first = self.at
+            if known := self._stretch():
+                left -= len(known)
+                yield first, known
                 continue
             self.line, self.at = self.at, self.at + 1
             self.visit += 1
@@ -184,7 +205,7 @@ class Translator(LineShapes):
                 raise self.refusal("GX224", message, hint=f"does it end? {how_to_raise('steps')}")
             shape, numbers = self.shape(self.line)
             if shape.template and self.plainly:
-                yield self.line, shape.template % (*numbers,)
+                yield self.line, (shape.template % (*numbers,),)
                 continue
             if shape.routine:
                 before = self.visit
@@ -192,21 +213,46 @@ class Translator(LineShapes):
                 left -= self.visit - before
                 shape, numbers = self.shape(self.line)
             for block in self._learnt(shape, numbers):
-                yield self.line, block
+                yield self.line, (block,)
         if self._learned is not None:
             self._learned.leave()
         self.line = max(self.own - 1, 0)
         self.visit += 1
         for block in self.closing():
-            yield self.line, block
+            yield self.line, (block,)
 
-    def _at_once(self) -> Iterator[tuple[int, str]]:
+    def _at_once(self) -> Iterator[tuple[int, Sequence[str]]]:
         """Yield the blocks of a run of lines, and go on to the line behind them."""
-        for block in self.several():
+        blocks, first = self.several(), self.line
+        if blocks and "" not in blocks:
+            self.visit += len(blocks) - 1
+            yield first, blocks
+            self.line, self.at = first + len(blocks), self.at + len(blocks)
+            self.visit += 1
+            return
+        for block in blocks:
             if block:
-                yield self.line, block
+                yield self.line, (block,)
             self.line, self.at = self.at, self.at + 1
             self.visit += 1
+
+    def _stretch(self) -> list[str]:
+        """Return the blocks of the lines from here on that are known, one for each; go on to them.
+
+        The translator is not touched by these.
+        """
+        learned = self._learned
+        if learned is None or learned.node is None:
+            return []
+        ahead, k = self._split_ahead(self.at)
+        stop = k + len(self.lines) - self.at
+        if self.annexed is not None:
+            stop = k + min(seam for seam in self.annexed.seams if seam > self.at) - self.at
+        known = learned.stretch(ahead, range(k, min(stop, len(ahead.keys))), self._shapes)
+        self.at += len(known)
+        self.visit += len(known)
+        self.line = self.at - 1
+        return known
 
     def _learnt(self, shape: Shape, numbers: Sequence[str]) -> Iterable[str]:
         """Return the blocks of a line, as they were learnt where there is something."""

@@ -537,15 +537,29 @@ MUTATIONS = (
     Mutation(
         "learned: a code is any number",
         LEARNED,
-        "    return (shape, *[numbers[k] for k in codes]) if codes else shape\n",
+        "    return (shape, *[numbers[at + k] for k in codes]) if codes else shape\n",
         "    return shape\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: of a long run of lines the last alone says where axes are",
+        LEARNED,
+        "                axes -= {axis for axis, _ in steps[first].ends}\n",
+        "                break\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: a run of lines ends nowhere",
+        LEARNED,
+        "        self.node = node\n        behind",
+        "        behind",
         LEARNT,
     ),
     Mutation(
         "learned: a number of digits alone is any number",
         LEARNED,
-        "        if step is None or not all([numbers[k].isdigit() for k in slots.digits]):\n",
-        "        if step is None:\n",
+        "    return not slots.digits or all([numbers[at + k].isdigit() for k in slots.digits])\n",
+        "    return True\n",
         LEARNT,
     ),
     Mutation(

@@ -70,7 +70,9 @@ def siemens(seed: int) -> str:
             step = ["R1=R1+1"] if "WHILE" in first else []
             lines += [filled(first, pick), *inner, *step, last]
         rare = pick.random() < 0.04
-        lines.append(filled(pick.choice(SIEMENS if rare else few), pick))
+        line = pick.choice(SIEMENS if rare else few)
+        alike = pick.randint(3, 30) if pick.random() < 0.1 else 1
+        lines += [filled(line, pick) for _ in range(alike)]
     return "\n".join([*lines, "M30", ""])
 
 
@@ -112,6 +114,10 @@ def test_programs_are_translated_alike(seeds: range) -> None:
     [
         (("X2 Y2", "X3 Y3", "X4 Y4", "X=IC(1) Y5"), "X5 Y5"),
         (("G700", "X1 Y1", "G700", "X2 Y2", "G700", "X3", "G3 X7 CR=2"), "G3 M9000"),
+        (
+            ("X1 Y2", "X2", "X3", "X4 Y7", *(f"X{k}" for k in range(5, 30)), "X=IC(1) Y=IC(1)"),
+            "X30 Y8",
+        ),
         (("G3 X=3 Y=1 CR=2", "G1 X4", "G3 X=6 Y=1 CR=2", "G1 X=R9", "G3 X=7 Y=1 CR=2"), "G3 M9000"),
     ],
 )
@@ -135,7 +141,7 @@ class Hidden(default_registry().dialect("siemens").translator):  # type: ignore[
 def test_nothing_is_learnt_by_what_is_not_keyed() -> None:
     lines = ["G90 G1 F9 X1", "X2", "X3", "X4", ""]
     translator = Hidden(lines, "a", default_registry().dialect("siemens"), Reading())
-    assert [block for _, block in translator.run()][-1] == "X4 P4"
+    assert [*translator.run()][-1][1][-1] == "X4 P4"
 
 
 def test_most_lines_of_a_program_are_learnt(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -50,6 +50,7 @@ class Programs(Runs):
     writes = True
     speller = Lines
     kept = KEPT
+    stepped = STEPPED
 
     def __init__(self, *program: object) -> None:
         super().__init__(*program)

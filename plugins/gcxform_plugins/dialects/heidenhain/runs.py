@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
 from itertools import accumulate
@@ -82,7 +83,14 @@ class Runs(Klartext):
         rapid = self.lines[self.line].endswith("FMAX")
         if self._hangs_on_more(rapid):
             return []
+        self._look_ahead()
         return self._alike(rapid) or ([] if self.feed_lost else self._mixed())
+
+    def _look_ahead(self) -> None:
+        """Come to know the shapes of the next lines, or a run of them would begin too late."""
+        for line in range(self.line + 1, min(self.line + 1 + LEAST, len(self.lines))):
+            with suppress(gx.InputError):  # it is refused when it is come to
+                self.shape(line)
 
     def _alike(self, rapid: bool) -> list[str]:
         """Return the blocks of lines that are all L, and all at the feed or all in rapid."""

@@ -26,7 +26,7 @@ POLAR = re.compile(
 PATH = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]+)?(?:/[ \t]*)?(LP|CP|CR|L|C)(?![A-Z])", re.I)
 STEPPED = re.compile(
     r"(?<![A-Z0-9])I[XYZABCUVW](?=[ \t]*[-+.,0-9Q])|"
-    r"[\s\d/]*LP(?![A-Z]).*(?<![A-Z0-9])IP[AR]",
+    r"LP(?![A-Z]).*(?<![A-Z0-9])IP[AR]",
     re.IGNORECASE,
 )
 """Words that count from where an axis stands. IPA of CP is no such word: it may be many turns."""

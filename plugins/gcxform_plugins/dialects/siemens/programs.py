@@ -84,6 +84,7 @@ class Programs(Learning):
     writes = True
     speller = Lines
     kept = KEPT
+    stepped = STEPPED
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError."""

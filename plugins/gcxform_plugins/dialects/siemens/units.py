@@ -42,8 +42,8 @@ class Units(Calls):
             self.annexing()
             self.lines.append("")
 
-    def run(self) -> Iterator[tuple[int, str]]:
-        """Yield blocks with the line that each is for. Raises InputError."""
+    def run(self) -> Iterator[tuple[int, Sequence[str]]]:
+        """Yield blocks with the line that they are for. Raises InputError."""
         self._one_is_meant()
         yield from super().run()
 
