@@ -115,7 +115,7 @@ def test_programs_are_translated_alike(seeds: range) -> None:
         (("X2 Y2", "X3 Y3", "X4 Y4", "X=IC(1) Y5"), "X5 Y5"),
         (("G700", "X1 Y1", "G700", "X2 Y2", "G700", "X3", "G3 X7 CR=2"), "G3 M9000"),
         (
-            ("X1 Y2", "X2", "X3", "X4 Y7", *(f"X{k}" for k in range(5, 30)), "X=IC(1) Y=IC(1)"),
+            ("X1 Y2", "X2", "X3", "X4 Y7", *(f"X{k}" for k in range(5, 30)), "X30 Y=IC(1)"),
             "X30 Y8",
         ),
         (("G3 X=3 Y=1 CR=2", "G1 X4", "G3 X=6 Y=1 CR=2", "G1 X=R9", "G3 X=7 Y=1 CR=2"), "G3 M9000"),
