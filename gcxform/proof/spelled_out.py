@@ -32,7 +32,7 @@ NEAR = 1e-5  # mm: far below what rounding does
 ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
 ROUND = 4e-4  # mm: so far a centre with the decimals of the control may lead beside an end
 SHORT = 8  # times, of a chord that is not shorter than an eighth of the radius
-SAME = ("kind", "feed_mode", "form", "side", "lost")
+SAME = ("kind", "feed_mode", "form", "side")
 ENDS = ("M2", "M30")
 COUNTS = ("tool-length", "frame")
 """Groups of codes that say how words count. Between two moves it does not matter when they do, or
@@ -89,6 +89,7 @@ def _differences(
     yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
+    yield from _first(_lost(a, b), "what is known of where axes stand")
     cuts = a.kind != Kind.RAPID
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
@@ -104,6 +105,18 @@ def _differences(
             yield min(there[0], len(b)), f"{act[1]} is {there[1]}"
     if len(acts[0]) != len(acts[1]):
         yield len(b), "events are lost, or there are more"
+
+
+def _lost(a: Toolpath, b: Toolpath) -> Any:
+    """Return before which moves an axis is lost in one path alone (n,).
+
+    Along a tool whose length nobody has said, one is where that begins to count or ends to: by G49
+    and G43 about a move in the machine, which is said without them where it counts all along.
+    """
+    differ = a.lost ^ b.lost
+    for path in (a, b):
+        differ[np.diff(path.frame, prepend=path.frame[:1]) != 0] &= ~(1 << ALONG)
+    return differ != 0
 
 
 def _same_side(

@@ -891,4 +891,18 @@ MUTATIONS = (
         "MOVES_ZERO = frozenset({115})",
         f"{WRITTEN}::test_steps_behind_what_ends_a_kept_function_stay",
     ),
+    Mutation(
+        "klartext: axes are where they were behind M128 that stays",
+        "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
+        "        if self.reading.stays:\n            self.refuse(f\"M12{",
+        "        if False:\n            self.refuse(f\"M12{",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-m128-stays]",
+    ),
+    Mutation(
+        "klartext: angles are where words say behind PATHCTRL VECTOR",
+        "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
+        "        elif POSES.match(words):\n",
+        "        elif False:\n",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-tcpm-vector-stays]",
+    ),
 )

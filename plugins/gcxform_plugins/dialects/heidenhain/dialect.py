@@ -39,6 +39,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M129 | from the end of its block | TNC 410, p. 169 |
 | M91, TOOL CALL | are refused under M128, as the manual asks | 620, p. 340 |
 | F TCP, AXIS POS | feed of the tip, angles of axes: as M128; F CONT, SPAT refused | 640, p. 400 |
+| M128, M129, TCPM, to the same control | stay, and so does all behind AXIS SPAT or VECTOR | |
 | PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
 | TOOL CALL | tool, length, S, F; without number S and F only | [K] |
 | its DL, DR | added to length and radius, which must be known; DR2: refused | iTNC 530, p. 183 |

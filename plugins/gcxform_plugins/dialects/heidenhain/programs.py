@@ -23,9 +23,16 @@ ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.I
 """Lines that hang on the direction of the move before them."""
 DECIDES = re.compile(r"FN\s*(?:9|10|11|12)\s*:|CALL\s+LBL", re.IGNORECASE)
 FROM_HERE = re.compile(r"SECTION|DECLARE|FUNCTION\s+MODE", re.IGNORECASE)
-QUIET = re.compile(r"(?:TOOL\s+DEF|BLK|TCH|CYCLE?\s+DEF|PATTERN|PLANE|TRANS|RND|CHF)(?![A-Z])")
+POSES = re.compile(r"FUNCTION\s+TCPM.*(?:SPAT|VECTOR)", re.IGNORECASE)
+"""Behind these, angles are not where words say (iTNC 530 340 49x, p. 516)."""
+TCPM = r"FUNCTION\s+(?:RESET\s+)?TCPM"
+QUIET = re.compile(
+    rf"(?:TOOL\s+DEF|BLK|TCH|CYCLE?\s+DEF|PATTERN|PLANE|TRANS|RND|CHF|{TCPM})(?![A-Z])"
+)
 """Statements that set no parameter but those they name, and no feed."""
-PLAIN = re.compile(r"(?:TOOL\s+DEF|BLK|PATTERN|RND|CHF|CYCLE?\s+DEF\s*2\d\d(?!\d))(?![A-Z])")
+PLAIN = re.compile(
+    rf"(?:TOOL\s+DEF|BLK|PATTERN|RND|CHF|CYCLE?\s+DEF\s*2\d\d(?!\d)|{TCPM})(?![A-Z])"
+)
 """And that neither turn nor tilt what follows, whatever they say."""
 SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
 HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
@@ -99,6 +106,12 @@ class Programs(Runs):
         if at < len(self.lines) and ROUNDED.match(self.lines[at]):
             self.refuse(f"the next line hangs on the direction of this {path.name}", path)
 
+    def switch(self, on: bool) -> tuple[str, ...]:
+        """Follow the tip, or leave it; the line stays where the program stays on its control."""
+        if self.reading.stays:
+            self.refuse(f"M12{8 if on else 9}: what the words are of changes with it")
+        return super().switch(on)
+
     # --- what is kept ---
 
     def ends(self, what: str, item: gx.Item) -> None:
@@ -121,6 +134,10 @@ class Programs(Runs):
         words = " ".join([words, *self._continued()])
         if FROM_HERE.match(words):
             self._keep_rest(why)
+        elif POSES.match(words):
+            self.rest_kept = why
+            if any(DECIDES.search(code(line)) for line in self.lines):
+                self.tied = why
         self._lose(items, words)
         number = zlib.crc32(text.encode("latin-1")) & 0xFFFFF
         return [f"{self.moving('G1')} {KEPT} P{number}".lstrip()]
