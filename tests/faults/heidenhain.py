@@ -894,8 +894,8 @@ MUTATIONS = (
     Mutation(
         "klartext: axes are where they were behind M128 that stays",
         "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
-        "        if self.reading.stays:\n            self.refuse(f\"M12{",
-        "        if False:\n            self.refuse(f\"M12{",
+        '        if self.reading.stays:\n            self.refuse(f"M12{',
+        '        if False:\n            self.refuse(f"M12{',
         "tests/test_corpus.py::test_case[dialects/heidenhain-m128-stays]",
     ),
     Mutation(
