@@ -82,7 +82,7 @@ class Cycle:
                 is refused
     spindle     how the spindle must turn: +1 (M3), -1 (M4); an empty tuple: it does not matter
     open_words  words that leave its moves open when they are in force
-    refused     why it is not expanded
+    refused     why it is not expanded; with `steps`, that to the hole and out of it, it may stay
     xy_only     why it is not expanded outside G17
     """
 

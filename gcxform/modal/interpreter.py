@@ -126,7 +126,9 @@ class Interpreter:
         if rule is not None:
             control = self.reading.control
             up, above = (_length(control, name) for name in PECKS)
-            state.cycles = Cycles(rule, up, above, self.reading.open_pecks)
+            open_pecks = self.reading.open_pecks
+            open_ways = open_pecks and self.reading.tables_stay
+            state.cycles = Cycles(rule, up, above, open_pecks, open_ways)
         retract = int(rule is None or rule.initial_level)
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}

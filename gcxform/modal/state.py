@@ -65,7 +65,9 @@ class Reading:
     rotary        the letters of the rotary axes of the machine; "" where that is not known
     open_pecks    whether a cycle may be read whose way back between pecks is a parameter that is
                   not given: where it then goes up to is nan; or whose R is above the level from
-                  which it began, under G99. Its block must stay as it is
+                  which it began, under G99. Its block must stay as it is. With `tables_stay`,
+                  whereby no turn or mirror is folded, also one that leaves its hole in a direction
+                  which only the machine knows
     tables_stay   whether a G10 may be read that writes into the control's tool table: its block
                   stays as it is, on the same control
     crosses       whether the program is to be written for another control

@@ -210,6 +210,20 @@ MUTATIONS = (
         "tests/test_cycle_refusals.py",
     ),
     Mutation(
+        "cycles: a shift of the machine's own is folded with a turn",
+        "gcxform/modal/interpreter.py",
+        "open_pecks and self.reading.tables_stay",
+        "open_pecks",
+        "tests/test_corpus.py::test_case[dialects/fanuc/fine-boring-turned]",
+    ),
+    Mutation(
+        "cycles: fine boring is refused where its block stays",
+        "gcxform/modal/cycles/checks.py",
+        "not (one.steps and self.open_ways)",
+        "True",
+        "tests/test_corpus.py::test_case[dialects/fanuc/fine-boring-stays]",
+    ),
+    Mutation(
         "cycles: two controls have one and the same parameter of pecks",
         "gcxform/pipeline/plan.py",
         "same and not expands, same and not folds",

@@ -34,13 +34,19 @@ class Checks:
 
     `open_pecks`: where the tool goes between them need not be known, nor when it rises to an R
     above the level from which the cycle began. Over the hole, or once at R, that is the same.
+    `open_ways`: nor how it gets out of the hole, of a cycle of which that is refused.
     """
 
     def __init__(
-        self, stretch: Stretch, rule: CycleRule, pecks: Ints, open_pecks: bool = False
+        self,
+        stretch: Stretch,
+        rule: CycleRule,
+        pecks: Ints,
+        open_pecks: bool = False,
+        open_ways: bool = False,
     ) -> None:
         self.stretch, self.rule, self.pecks, self.cycles = stretch, rule, pecks, rule.cycles
-        self.open_pecks = open_pecks
+        self.open_pecks, self.open_ways = open_pecks, open_ways
         self.calls, self.drilled, self.words = stretch.calls, stretch.drilled, stretch.words
         self.codes = set(distinct(self.calls.code).tolist())
 
@@ -73,9 +79,9 @@ class Checks:
         return self._with_code([code for code, one in self.cycles.items() if word in of(one)])
 
     def _about_codes(self) -> Iterator[tuple[Flags, str, str]]:
-        refused = {code: one.refused for code, one in self.cycles.items() if one.refused}
-        for code, reason in refused.items():
-            yield self._with_code([code]), f"{{code}} is not expanded: {reason}", ""
+        for code, one in self.cycles.items():
+            if one.refused and not (one.steps and self.open_ways):
+                yield self._with_code([code]), f"{{code}} is not expanded: {one.refused}", ""
         known = self._with_code([code for code, one in self.cycles.items() if one.steps])
         yield ~known, "{code} is not a cycle of this control", ""
         if self.calls.plane != Plane.XY:

@@ -45,6 +45,7 @@ class Cycles:
 
     `zero` is from where levels counted in the last stretch. `peck_return` and `peck_clearance` (mm)
     are for controls in which they are parameters; with `open_pecks` what they leave open is nan.
+    With `open_ways` a cycle is read of which is refused how the tool gets out of the hole.
     """
 
     def __init__(
@@ -53,13 +54,14 @@ class Cycles:
         peck_return: float | None = None,
         peck_clearance: float | None = None,
         open_pecks: bool = False,
+        open_ways: bool = False,
     ) -> None:
         self.rule = replace(
             rule,
             peck_return=rule.peck_return if peck_return is None else peck_return,
             peck_clearance=rule.peck_clearance if peck_clearance is None else peck_clearance,
         )
-        self.open_pecks = open_pecks
+        self.open_pecks, self.open_ways = open_pecks, open_ways
         self.mode = Mode()
         self.zero: object = None
 
@@ -85,7 +87,8 @@ class Cycles:
         """Return the moves of stretches of one plane and unit, and what speaks against them."""
         stretch = joined(stretches)
         pecks = _pecks(stretch, self.rule)
-        refusals, wrong = Checks(stretch, self.rule, pecks, self.open_pecks).refusals()
+        checks = Checks(stretch, self.rule, pecks, self.open_pecks, self.open_ways)
+        refusals, wrong = checks.refusals()
         holes = holes_of(stretch, stretch.drilled & ~wrong, pecks)
         return Steps(rows_of(holes, self.rule), stretch.after, refusals)
 

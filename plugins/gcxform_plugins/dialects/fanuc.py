@@ -30,7 +30,8 @@
 | tool change | moves axes: positions are unknown after it, but for `inert-m = [6]` |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
-| G76, G87, G88 | depend on parameters or on the operator: refused |
+| G76 | the shift in the hole is a parameter's: stays, to the same control; else refused |
+| G87, G88 | depend on parameters or on the operator: refused |
 | M29 | the tap that follows is in step with the spindle: it moves nothing itself |
 | G96 | changes the speed of the spindle and no path |
 | G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
@@ -91,7 +92,7 @@ BORE_DWELL = (v.feed(BOTTOM, v.DWELL), v.feed(CLEARANCE), v.rapid(RETRACT))
 CYCLES = {
     73: v.Cycle(v.DRILL, pecks="break", needs="Q", takes="PQK"),
     74: v.Cycle(TAP_LEFT, takes="PQK", open_words="Q"),
-    76: v.Cycle(takes="PQK", refused=SHIFTS),
+    76: v.Cycle(v.DRILL_DWELL, takes="PQK", refused=SHIFTS),
     81: v.Cycle(v.DRILL, takes="PQK"),
     82: v.Cycle(v.DRILL_DWELL, needs="P", takes="PQK"),
     83: v.Cycle(v.DRILL, pecks="clear", needs="Q", takes="PQK"),
