@@ -117,6 +117,8 @@ class CycleRule:
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98
+    patterns        kept codes that drill the cycle in force at places of their own, as G70 of Haas:
+                    no others may stand where a cycle is in force
     """
 
     cycles: Mapping[int, Cycle]
@@ -130,6 +132,7 @@ class CycleRule:
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True
+    patterns: frozenset[str] = frozenset()
 
     def place_is_open(self, control: Mapping[str, str | float]) -> bool:
         """Tell whether a setting that is not given decides if a block without a place drills."""

@@ -160,9 +160,17 @@ class Depending:
             return "other places of the axes"
         if self._shifts_go():
             return "coordinates that are not shifted"
+        if manner.expands and self._drills(line):
+            return "no canned cycle to drill"
         if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
             return "other modes (G20 or G21, G90 or G91, G93 or G94)"
         return "another dialect" if manner.crossing else ""
+
+    def _drills(self, line: int) -> bool:
+        """Whether a code drills the canned cycle in force at places of its own."""
+        rule = self.task.manner.source.cycle_rule
+        called = self.task.table.meanings[int(self.task.shape[line])].call
+        return rule is not None and called in rule.patterns
 
     def _probes(self) -> bool:
         """Whether the program has probed, or may have: what it measures is said in coordinates."""

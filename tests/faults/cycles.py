@@ -224,6 +224,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/fanuc/fine-boring-stays]",
     ),
     Mutation(
+        "cycles: a pattern of holes drills a cycle that has become moves",
+        "gcxform/emit/depending.py",
+        "manner.expands and self._drills(line)",
+        "False",
+        "tests/test_corpus.py::test_case[dialects/haas/patterns-without-cycle]",
+    ),
+    Mutation(
         "cycles: two controls have one and the same parameter of pecks",
         "gcxform/pipeline/plan.py",
         "same and not expands, same and not folds",

@@ -94,10 +94,12 @@ def _known(lines: Lines, group: str) -> Flags:
 
 def _refuse_calls(lines: Lines, modes: Modes) -> None:
     """Refuse calls under cutter compensation and in a canned cycle; note the others."""
+    rule = lines.dialect.cycle_rule
     for call in lines.kept_calls:
         _note_computed(lines, call.line)
         lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
-        if modes.comp[call.line] or modes.cycle[call.line] != CYCLE_OFF:
+        drills = rule is not None and call.name in rule.patterns
+        if modes.comp[call.line] or (modes.cycle[call.line] != CYCLE_OFF and not drills):
             what, end = COMP if modes.comp[call.line] else CYCLE
             message = f"{what} is in force at the call of {call.name}, whose moves are not known"
             lines.findings.add(

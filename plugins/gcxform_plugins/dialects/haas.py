@@ -27,7 +27,8 @@ refused. What is not named here is as in `fanuc`.
 | canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
 | a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
 | G12 G13, G47 | pockets and engraving in their block: kept, places are lost behind it | manual |
-| G70 G71 G72 G150, drilling | cycles: refused by name | manual |
+| G150, drilling | cycles: refused by name | manual |
+| G70 G71 G72 | drill holes of the cycle in force at places of their own: as these | manual |
 | G31 | as Fanuc's | manual |
 | G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
@@ -83,7 +84,7 @@ ARITHMETIC = replace(
 """#10100 is another name of #100 (NGC). Tables of its variables list #10000 to #10149 as general
 ones, and no other name of #1 to #33: #10000 to #10099 may be set, and are not read. #1601 and
 above: flutes and the like of tools."""
-PATTERNS = ("G70", "G71", "G72", "G150")
+PATTERNS = ("G70", "G71", "G72")
 FIVE_AXIS_CYCLES = ("G153", "G155", *(f"G{n}" for n in (161, 162, 163, 164, 165, 166, 169)))
 
 
@@ -103,7 +104,8 @@ class Haas(Fanuc):
         "G154": Fanuc.codes["G54.1"],
         **{code: v.frame("frame", "work") for code in MORE_OFFSETS},
         **{code: v.cuts("ZDIJKLPQR") for code in ("G12", "G13")},
-        **{code: v.barrier("cycle", v.CYCLE, "DIJKLPQR") for code in PATTERNS},
+        **{code: v.cuts("XYIJKL") for code in PATTERNS},
+        "G150": v.barrier("cycle", v.CYCLE, "DIJKLPQR"),
         "G77": v.barrier("cycle", v.CYCLE, "IJKLPQR"),
         "G47": v.cuts("XYZEDIJKPRQ"),
         **{code: v.barrier("cycle", v.CYCLE, "EIJKLPQR") for code in FIVE_AXIS_CYCLES},
@@ -173,4 +175,5 @@ class Haas(Fanuc):
         cycles=CYCLES,
         repeats="L",
         alone="cycle-without-place",
+        patterns=frozenset(PATTERNS),
     )
