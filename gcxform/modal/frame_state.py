@@ -21,6 +21,8 @@ from gcxform.values import dataclass
 NO_TOOL = (0.0, 0.0, 0.0)
 BY_VALUE = "G43.1"
 """The name of a tool vector that the program gives."""
+INSTEAD = f"{BY_VALUE} instead of a number"
+"""And of one that takes the place of a length by its number, which has not been ended."""
 UNFRAMED: Final = frozenset(
     {
         *("known", "in_spindle", "changes", "homes", "written", "number", "lost_numbers", "tilted"),
@@ -217,7 +219,8 @@ class FrameState:
             self.tool,
             self.following,
             bool(self.tool_name),
-            self.tool_name == BY_VALUE,
+            self.tool_name in (BY_VALUE, INSTEAD),
+            self.tool_name == INSTEAD,
         )
 
     def _set_anywhere(self, turned: bool) -> dict[int, str]:

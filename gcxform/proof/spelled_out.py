@@ -163,9 +163,17 @@ def _places(
 
 
 def _machine(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, int]]:
-    """Return the moves in coordinates of the machine, with the lines of their blocks from 0."""
-    found = [e for e in path.events if e.row < len(path) and _act(e, dialect) == MACHINE]
+    """Return the moves in coordinates of the machine, with the lines of their blocks from 0.
+
+    A block of one that names no axis, as the axes stand there already, has no row.
+    """
+    found = [e for e in path.events if _act(e, dialect) == MACHINE and _moves(e, path)]
     return [(e.row, e.line) for e in found]
+
+
+def _moves(event: Event, path: Toolpath) -> bool:
+    """Whether the block of an event moves something."""
+    return event.row < len(path) and int(path.source[event.row]) == event.line
 
 
 def _words(block: bytes) -> dict[str, Decimal]:
@@ -214,7 +222,11 @@ def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values
     The end of the file is one of the program, and no tolerance of the path is what there is before
     the first one.
     """
-    found = [(e.row, e.what, e.values) for e in path.events if _group(e, dialect) not in COUNTS]
+    found = [
+        (e.row, e.what, e.values)
+        for e in path.events
+        if _group(e, dialect) not in COUNTS and (_act(e, dialect) != MACHINE or _moves(e, path))
+    ]
     bound = [k for k, each in enumerate(found) if each[1] == "G64" and any(v for _, v in each[2])]
     loose = min(bound, default=len(found))
     found = [each for k, each in enumerate(found) if k >= loose or each[1] != "G64"]
@@ -226,7 +238,9 @@ def _frames(path: Toolpath, dialect: type[Dialect]) -> Any:
 
     Whether a length of nothing was called does not matter to them.
     """
-    frames = (repr(replace(frame, called=False, valued=False)) for frame in path.frames)
+    frames = (
+        repr(replace(frame, called=False, valued=False, instead=False)) for frame in path.frames
+    )
     found = np.array(["", *frames])[path.frame + 1]
     found[[row for row, _ in _machine(path, dialect)]] = ""
     return found

@@ -41,6 +41,8 @@ class Frame:
              code that is read switches it
     called   whether the program has called a tool length, which may be 0
     valued   whether it has given that length by its value (G43.1), and not by a number
+    instead  whether one by its number was in force until then, and not ended
+    machine  whether words are those of the machine, whatever is in force: for a way home by G53
     """
 
     work: str
@@ -53,6 +55,8 @@ class Frame:
     following: bool | None = None
     called: bool = False
     valued: bool = False
+    instead: bool = False
+    machine: bool = False
 
     @cached_property
     def shifts_only(self) -> bool:

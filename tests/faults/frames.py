@@ -15,6 +15,27 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[offsets/length-by-value-elsewhere]",
     ),
     Mutation(
+        "offsets: words of the machine are folded as well",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "        if frame.machine:\n",
+        "        if False:\n",
+        "tests/test_corpus.py::test_case[dialects/across/home-with-offsets]",
+    ),
+    Mutation(
+        "offsets: a length by its number stays in force behind one by its value",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "still = [frame.instead for",
+        "still = [False for",
+        "tests/test_corpus.py::test_case[dialects/across/length-by-value-behind-a-number]",
+    ),
+    Mutation(
+        "spelled out: a code of the machine without a move is one all the same",
+        "gcxform/proof/spelled_out.py",
+        "and int(path.source[event.row]) == event.line",
+        "and True",
+        "tests/test_corpus.py::test_case[dialects/across/home-twice]",
+    ),
+    Mutation(
         "offsets: a length by its number goes into the words where one by its value would",
         "plugins/gcxform_plugins/passes/offsets.py",
         "spent and frame.valued",

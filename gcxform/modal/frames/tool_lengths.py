@@ -7,7 +7,7 @@ from math import isnan
 import numpy as np
 
 from gcxform.catalogue.remedies import tool_said
-from gcxform.modal.frame_state import BY_VALUE, NO_TOOL, FrameState, replace
+from gcxform.modal.frame_state import BY_VALUE, INSTEAD, NO_TOOL, FrameState, replace
 from gcxform.modal.frames.act import ActError, Asked
 
 BEFORE = "the H before the program"
@@ -197,7 +197,8 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
             raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
         vector[asked.column(state, axis)] = value
     x, y, z = vector
-    return state.with_tool((x, y, z), BY_VALUE)
+    alone = state.tool_name in ("", BY_VALUE)
+    return state.with_tool((x, y, z), BY_VALUE if alone else INSTEAD)
 
 
 def offset_of_tool(state: FrameState, asked: Asked) -> FrameState:

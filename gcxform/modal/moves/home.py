@@ -117,7 +117,7 @@ def _note_machine(
     if not all(isfinite(home[k]) for k, axis in enumerate(track.axes) if axis in named):
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
-    frame = Frame(frames.work, shift, (frames.first,) * len(track.axes))
+    frame = Frame(frames.work, shift, (frames.first,) * len(track.axes), machine=True)
     track.homed[line] = WayHome(code.split()[0], frame, not words, track.frame.called)
 
 

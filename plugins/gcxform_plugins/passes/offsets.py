@@ -7,7 +7,7 @@ and computes the words anew. The proof reads the output, without these codes, to
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,13 +35,20 @@ class Offsets(gx.Pass):
         self._check_known(path)
         self._check_turned(path)
         spent = context.saying.folds_value("length-vector")
+        if spent:
+            self._check_ended(path)
         frames = tuple(
             self._unshifted(frame, path, spent and frame.valued) for frame in path.frames
         )
         return path.replace(frames=frames, folded=True)
 
     def _unshifted(self, frame: gx.Frame, path: gx.Toolpath, spent: bool) -> gx.Frame:
-        """Return the frame in which only the tool length is left; `spent`: not in the words."""
+        """Return the frame in which only the tool length is left; `spent`: not in the words.
+
+        Words of the machine stay what they are.
+        """
+        if frame.machine:
+            return replace(frame, work=path.first)
         shift = np.zeros(len(frame.shift))
         shift[:3] = 0.0 if spent else np.nan_to_num(np.array(frame.tool))
         return gx.Frame(
@@ -52,7 +59,18 @@ class Offsets(gx.Pass):
             following=frame.following,
             called=frame.called and not spent,
             valued=frame.valued,
+            instead=frame.instead,
         )
+
+    def _check_ended(self, path: gx.Toolpath) -> None:
+        """Refuse a length by its value behind one by its number, which would stay in force."""
+        still = [frame.instead for frame in path.frames]
+        rows = np.flatnonzero(np.array(still, np.bool_)[path.frame])
+        if len(rows):
+            message = "a tool length by its value takes the place of one by its number here, "
+            message += "and that would stay in force"
+            hint = "draw the tool back, and write G49 before the code of the value"
+            raise path.refuse("GX501", rows, message, hint)
 
     def _check_known(self, path: gx.Toolpath) -> None:
         """Refuse moves in coordinates of which it is not known where they are."""
