@@ -59,6 +59,7 @@ class FeedPass(gx.Pass):
         still = np.zeros(len(path), np.bool_)
         feed = np.where(other, np.nan, path.feed)
         if len(rows):
+            self._check_code(path, rows, context.target)
             moves = _Moves(path, rows)
             self._check(path, moves, context)
             way = moves.lengths()
@@ -78,6 +79,14 @@ class FeedPass(gx.Pass):
         return changed.with_rows((~still).astype(np.int64)) if still.any() else changed
 
     # --- what is refused ---
+
+    def _check_code(self, path: gx.Toolpath, rows: Ints, target: type[gx.Dialect]) -> None:
+        """Refuse a mode that the target does not have, or of which it is not known what F says."""
+        name = "G93" if self.mode == "inverse-time" else "G94"
+        code = target.codes.get(name)
+        if code is None or code.reason:
+            why = code.reason if code else "it has no such code"
+            self._refuse(path, rows, f"feeds in {name} on {target.name}: {why}")
 
     def _check(self, path: gx.Toolpath, moves: _Moves, context: gx.PassContext) -> None:
         """Raise InputError for moves whose time or length is not known."""
