@@ -18,7 +18,7 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.codes import Effect
 from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.machine.machine import Machine
-from gcxform.modal.meaning.meaning import FRAMING
+from gcxform.modal.meaning.meaning import FRAMING, LENGTHENED
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.toolpath.circles import radius_and_angle
 from gcxform.toolpath.path import (
@@ -345,8 +345,9 @@ def _events(a: Side, b: Side, matching: Matching, tolerance: float) -> list[Diff
 def _told(side: Side, other: type[Dialect]) -> list[Event]:
     """Return the events, without those that the other dialect reads as modes.
 
-    What shifts coordinates by known amounts is seen in the positions, and needs no telling. Where
-    the other control follows no tip, the code that leaves it says nothing.
+    What shifts coordinates by known amounts is seen in the positions, and needs no telling; nor do
+    tool lengths, between controls that call them in ways of their own. Where the other control
+    follows no tip, the code that leaves it says nothing.
     """
     path, own = side
     plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
@@ -356,7 +357,8 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     if own.tip_rule.switches != other.tip_rule.switches:
         silent |= {code for act, code in own.tip_rule.switches.items() if act == "tip-off"}
     if plainly:
-        silent |= {code for code, what in own.codes.items() if what.act in FRAMING}
+        acts = FRAMING if own is other else FRAMING | LENGTHENED
+        silent |= {code for code, what in own.codes.items() if what.act in acts}
     return [event for event in path.events if event.what not in silent]
 
 

@@ -76,3 +76,30 @@ def test_a_drawn_program_means_the_same_there(source):
             assert found is None, f"{target}: {found}\n{pair[0]}\n{pair[1]}"
             compared += 1
     assert compared >= len(pairs) // 2 or not rs274.available(), "nearly all was refused"
+
+
+DIRECTIONS = [("linuxcnc", "siemens"), ("siemens", "linuxcnc")]
+DIRECTIONS += [("linuxcnc", "fagor"), ("fagor", "linuxcnc")]
+"""Those of Klartext are in `test_klartext_spelled.py`."""
+FLOOR = (0.1, 2.54)
+"""What LinuxCNC makes of slower feeds in G93, in mm and in inches: no other control does."""
+
+
+@pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
+@pytest.mark.parametrize(("source", "target"), DIRECTIONS)
+@seeds_kit.shares(10_000 if seeds_kit.LONG else 20, 50)
+def test_languages_say_what_words_say_and_words_what_they_say(
+    source: str, target: str, seeds: range
+) -> None:
+    compared = 0
+    for seed in seeds:
+        if (pair := translated(seed, source, target)) is None:
+            continue
+        there, here = done(source, pair[0]), done(target, pair[1])
+        moves = [move for move in (*there, *here) if isinstance(move, shop.Move)]
+        if any(m.feed and m.feed[0] == 93 and round(m.feed[1], 9) in FLOOR for m in moves):
+            continue
+        found = shop.differs(there, here)
+        assert found is None, f"{found}\n{pair[0]}\n{pair[1]}"
+        compared += 1
+    assert compared, "all was refused"
