@@ -351,9 +351,8 @@ def _told(side: Side, other: type[Dialect]) -> list[Event]:
     """
     path, own = side
     plainly = all(set(frame.origin) == {path.first} for frame in path.frames)
-    silent = {
-        code for code, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes
-    }
+    modal = (c for c, what in other.codes.items() if what.effect is Effect.MODAL and not what.takes)
+    silent = {*modal}
     if own.tip_rule.switches != other.tip_rule.switches:
         silent |= {code for act, code in own.tip_rule.switches.items() if act == "tip-off"}
     if plainly:

@@ -92,3 +92,19 @@ def test_a_d_that_stays_in_force_is_no_tool_in_the_spindle():
     once = CONTOUR.format("G41 D1") + "\n" + CONTOUR.format("G41")
     found = refused("fanuc", "linuxcnc", once)
     assert found.message == "linuxcnc cannot say G41 without D"
+
+
+def test_lengths_between_controls_are_seen_in_positions():
+    """SUPA D0 lets go of the length for one move, M91 does without: no axis goes elsewhere."""
+    klartext = b"0 BEGIN PGM A MM\n1 TOOL CALL 1 Z S900\n2 L X+1 Y+2 Z+3 R0 FMAX\n"
+    klartext += b"3 L Z+300 R0 FMAX M91\n4 L X+5 Y+6 R0 FMAX\n5 L Z+9 FMAX\n6 M30\n7 END PGM A MM\n"
+    words = b"G21 G90 G17 G94 G40\nT1 M6\nG43 H1\nS900\nG0 X1 Y2 Z3\n{}G0 X5 Y6\nG0 Z9\nM30\n"
+    ends = words.replace(b"{}", b"G49\nG53 G0 Z300\nG43 H1\n")
+    start, tools = {"X": 0.0, "Y": 0.0, "Z": 0.0}, {1: Tool(length=10.0, radius=1.0)}
+    there = gx.read(klartext, DIALECTS["heidenhain"], start=start, tools=tools)
+    here, other = (
+        gx.read(text, DIALECTS["linuxcnc"], start=start, tools=tools)
+        for text in (ends, words.replace(b"{}", b"G53 G0 Z300\n"))
+    )
+    assert gx.compare(there, here).same
+    assert not gx.compare(here, other).same
