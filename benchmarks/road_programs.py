@@ -185,6 +185,12 @@ def klartext_twin(lines: int) -> Lines:
         yield "G1 Z0.5"
 
 
+def klartext_plain(lines: int) -> Lines:
+    """Yield straight code in Klartext."""
+    for k, (x, y, z) in enumerate(points(lines), 3):
+        yield f"{k} L X{x:+.3f} Y{y:+.4f} Z{z:+.4f}"
+
+
 PROGRAMS: dict[str, Callable[[int], Lines]] = {
     "straight": straight,
     "nearby": nearby,
@@ -201,15 +207,22 @@ PROGRAMS: dict[str, Callable[[int], Lines]] = {
     "chords": chords,
     "siemens": siemens,
     "siemens-twin": siemens_twin,
+    "siemens-plain": straight,
+    "fagor-plain": straight,
+    "klartext-plain": klartext_plain,
     "klartext": klartext,
     "klartext-twin": klartext_twin,
 }
+KLARTEXT = (
+    ("0 BEGIN PGM ROAD MM", "1 TOOL CALL 1 Z S5000 F1000", "2 L X+0 Y+0 Z+5 R0 FMAX M3"),
+    ("END PGM ROAD MM",),
+)
 FRAMES: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "siemens": (("G71 G90 G17", "F1000", "G0 X0 Y0 Z5", "G1 Z0"), ("M30",)),
-    "klartext": (
-        ("0 BEGIN PGM ROAD MM", "1 TOOL CALL 1 Z S5000", "2 L X+0 Y+0 Z+5 R0 FMAX M3"),
-        ("END PGM ROAD MM",),
-    ),
+    "siemens-plain": (("G710 G90 G17", "F1000", "G0 X0 Y0 Z5", "G1 Z0"), ("M30",)),
+    "fagor-plain": (("G71 G90 G17", "F1000", "G0 X0 Y0 Z5", "G1 Z0"), ("M30",)),
+    "klartext": KLARTEXT,
+    "klartext-plain": KLARTEXT,
 }
 """What stands before and behind a program of another language than LinuxCNC's."""
 

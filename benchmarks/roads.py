@@ -51,6 +51,12 @@ def run(name: str, program: str, most: float, chain: str = "absolute") -> Road:
     return Road(name, program, ("run", *LINUXCNC, "-x", chain), most)
 
 
+def plain(name: str, dialect: str, most: float) -> Road:
+    """Return a road of straight code in a language of its own."""
+    words = "run", "-q", "-f", dialect, "-x", "absolute"
+    return Road(f"{name}, plain", f"{name}-plain", words, most, GOAL, "straight")
+
+
 ROADS = (
     Road("straight", "straight", ("run", *LINUXCNC, "-x", "absolute"), 2.6, STRAIGHT_GOAL),
     run("comments", "comments", 4.5),
@@ -69,6 +75,9 @@ ROADS = (
     Road("info", "straight", ("info", "-f", "linuxcnc"), 1.6),
     Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 9.0, GOAL,
          "siemens-twin"),
+    plain("siemens", "siemens", 3.6),
+    plain("klartext", "heidenhain", 3.6),
+    plain("fagor", "fagor", 9.0),
     Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 10.5, GOAL,
          "klartext-twin"),
 )  # fmt: skip

@@ -430,3 +430,14 @@ def test_linuxcnc_refuses_it_too(blocks: str) -> None:
         rs274.run(program.encode())
     assert refusal.value.message.startswith(REFUSED[blocks])
     assert refused(program) in ("GX230", "GX350")
+
+
+def test_a_long_program_of_contours_is_cut_between_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a window ends within a contour, what is before that contour goes on."""
+    monkeypatch.setattr("gcxform.pipeline.cutter_comp.SMALL", 0)
+    one, two = b"G41 D1 G1 X1\nX2\nG40 X3 Y3\n", b"G42 X9\nX8\n"
+    end = b"G40 X7 Y7\nX1\n"
+    found = list(whole_stretches(iter([b"G17 G40\nX0 Y0\n" + one + two, end])))
+    assert found == [b"G17 G40\nX0 Y0\n" + one, two + end]
+    beside = [b"X0\nG41 D1 X1\nG40 X3 Y3 G41 D2\nX5\n", b"G40 X7 Y7\n"]
+    assert list(whole_stretches(iter(beside))) == [b"X0\n", beside[0][3:] + beside[1]]

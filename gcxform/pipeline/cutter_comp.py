@@ -32,6 +32,7 @@ from gcxform.toolpath.path import Toolpath
 
 CODE = re.compile(rb"G[ \t]*0*4[ \t]*([012])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
+SMALL = 1 << 17  # bytes; so much may wait, and what is seen together is said together
 AXIS = re.compile(rb"[XYZ]")
 WHICH = ("kind", "plane", "source", "nth", "form", "side")
 WHERE = ("start", "end", "centre", "sweep", "radius")
@@ -78,26 +79,42 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
     """Yield texts of whole lines that end where no compensation is in force and the tool has left.
 
     It has left with words of two of X, Y and Z: in every plane one of them is of the plane. What is
-    looked for are the letters; a text that is cut elsewhere is refused by the pass.
+    looked for are the letters; a text that is cut elsewhere is refused by the pass. A long one that
+    ends within a contour is cut before it.
     """
-    waiting: list[bytes] = []
-    on, left = False, True
-    seen: set[bytes] = set()
+    waiting = b""
     for text in texts:
-        waiting.append(text)
-        plain = _bare(text) if not left or has_sign(CODE, text) else b""
-        found = list(CODE.finditer(plain))
-        if found:
-            on = found[-1][1] != b"0"
-        if found or not left:
-            behind = AXIS.findall(plain, found[-1].end() if found else 0)
-            seen = {*behind} if found else {*seen, *behind}
-            left = not on and len(seen) > 1
-        if left:
-            yield b"".join(waiting)
-            waiting = []
+        waiting += text
+        at = len(waiting)
+        if has_sign(CODE, waiting):
+            at = _last_left(COMMENT.sub(lambda found: b" " * len(found[0]), waiting).upper())
+        if at == len(waiting) or (at and at > SMALL):
+            yield waiting[:at]
+            waiting = waiting[at:]
     if waiting:
-        yield b"".join(waiting)
+        yield waiting
+
+
+def _last_left(plain: bytes) -> int:
+    """Return where the stretch begins that is open at the end of a text; the end if none is.
+
+    None is open where the text begins.
+    """
+    codes = [*CODE.finditer(plain)]
+    begins, before, left = -1, 0, 0  # where a stretch is open, the one before, where that is left
+    for found, behind in zip(codes, [*(m.start() for m in codes[1:]), len(plain)], strict=True):
+        line = max(plain.rfind(b"\n", 0, found.start()), plain.rfind(b"\r", 0, found.start())) + 1
+        if begins < 0 and line >= left:
+            begins = line
+        elif begins < 0:  # in the line in which the last one is left
+            begins = before
+        before, seen = begins, set[bytes]()
+        for word in AXIS.finditer(plain, found.end(), behind) if found[1] == b"0" else ():
+            seen.add(word[0])
+            if len(seen) > 1:
+                begins, left = -1, word.end()
+                break
+    return len(plain) if begins < 0 else begins
 
 
 def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:

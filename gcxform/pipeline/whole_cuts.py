@@ -16,11 +16,14 @@ from gcxform.pipeline.plan import Plan
 MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
 LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
 KNOTS = re.compile(rb"[Gg][ \t]*0*5[ \t]*\.[ \t]*([23])0*(?![0-9])")
+DRILLS = re.compile(rb"[Gg][ \t]*(?:7[346]|8[1-9])(?![0-9.])")
+PART = 1 << 17  # bytes
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 
 
 def undivided(texts: Iterator[bytes], plan: Plan) -> Iterator[bytes]:
     """Yield texts of whole lines that divide nothing that a plan has to see as a whole."""
+    texts = _in_parts(texts)
     demands = [step.demands for step in plan.path_passes]
     if plan.machine_reading.curves and "G5.2" in plan.source.codes:
         texts = _divided(texts, _last_spline)
@@ -29,6 +32,21 @@ def undivided(texts: Iterator[bytes], plan: Plan) -> Iterator[bytes]:
     if any(each.reads_vectors for each in demands):
         return whole_sections(texts)
     return whole_cuts(texts) if any(each.whole_cuts for each in demands) else texts
+
+
+def _in_parts(texts: Iterator[bytes]) -> Iterator[bytes]:
+    """Yield texts in smaller parts once they drill: a line of a canned cycle is many moves."""
+    drills = False
+    for text in texts:
+        drills = drills or DRILLS.search(text) is not None
+        at = 0
+        while drills and len(text) - at > PART:
+            end = text.rfind(b"\n", at, at + PART) + 1
+            if not end:
+                break
+            yield text[at:end]
+            at = end
+        yield text[at:]
 
 
 def whole_cuts(texts: Iterator[bytes]) -> Iterator[bytes]:

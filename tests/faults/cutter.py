@@ -148,8 +148,8 @@ MUTATIONS = (
     Mutation(
         "compensated: windows end inside a stretch",
         "gcxform/pipeline/cutter_comp.py",
-        'on = found[-1][1] != b"0"',
-        "on = False",
+        "    return len(plain) if begins < 0 else begins\n",
+        "    return len(plain)\n",
         CUTTER,
     ),
     Mutation(
