@@ -73,12 +73,12 @@ ROADS = (
     run("pass arcs", "chords", 3.8, "arcs tolerance=0.005"),
     Road("compare", "straight", ("compare", "-f", "linuxcnc"), 2.8, beside="nearby"),
     Road("info", "straight", ("info", "-f", "linuxcnc"), 1.6),
-    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 9.0, GOAL,
+    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 11.5, GOAL,
          "siemens-twin"),
-    plain("siemens", "siemens", 3.6),
-    plain("klartext", "heidenhain", 3.6),
-    plain("fagor", "fagor", 9.0),
-    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 10.5, GOAL,
+    plain("siemens", "siemens", 4.8),
+    plain("klartext", "heidenhain", 4.2),
+    plain("fagor", "fagor", 6.3),
+    Road("klartext", "klartext", ("run", "-q", "-f", "heidenhain", "-x", "absolute"), 7.0, GOAL,
          "klartext-twin"),
 )  # fmt: skip
 
