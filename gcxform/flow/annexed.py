@@ -13,13 +13,19 @@ from gcxform.flow.lookup import Folders, Found, only
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 LEADER = b"\0\x7f"  # NUL and DEL, as in `iso.lark`
+BLANK_TAPE = LEADER.decode("latin-1")
 LINE_END = re.compile(rb"\r\n|\n|\r")
+ENDS = re.compile(LINE_END.pattern.decode("latin-1"))
 
 
 def lines_of(text: bytes) -> list[str]:
     """Return the lines of a program, without the leader of a tape and what editors put first."""
-    lines = LINE_END.split(text.removeprefix(BYTE_ORDER_MARK))
-    return [line.decode("latin-1") if line.strip(LEADER) else "" for line in lines]
+    text = text.removeprefix(BYTE_ORDER_MARK)
+    whole = text.decode("latin-1")
+    lines = whole.split("\n") if b"\r" not in text else ENDS.split(whole)
+    if any(sign in text for sign in LEADER):
+        return [line if line.strip(BLANK_TAPE) else "" for line in lines]
+    return lines
 
 
 class Annexed:

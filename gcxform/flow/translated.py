@@ -75,7 +75,7 @@ def translated_so_far(
         if translator.again <= stay:
             break
         stay |= translator.again
-    joined = "".join(f"{block}\n" for block in blocks).encode("latin-1")
+    joined = "\n".join([*blocks, ""]).encode("latin-1")
     made = Translated(source, translator, joined, origin, np.array(visits, np.int64), lost)
     return made, refused
 

@@ -67,7 +67,10 @@ KEEPS = (
 )
 MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
 UNREAD = gx.Item("flow", ("",), (), (0, 0))
-STEPPED = re.compile(r"=[ \t]*IC[ \t]*\(|(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+STEPPED = re.compile(  # it begins with letters that may be looked for one by one
+    r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
+    r"|(?<=[Gg])(?<![A-Za-z0-9_][Gg])[ \t]*0*91(?![0-9.]))"
+)
 KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
 """Commands and M codes that move nothing."""
 FEED_MODES = frozenset(("93", "94", "95"))
