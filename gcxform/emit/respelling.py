@@ -68,6 +68,25 @@ def respelled(
     return translator.renumbered(made_of.decode("latin-1")).encode("latin-1")
 
 
+def refuse_kept_inches(source: Translated) -> None:
+    """Refuse a line that is kept as it stands and puts inches in force: they would stay so.
+
+    Raises InputError.
+    """
+    translator = source.translator
+    blocks = source.text.splitlines()
+    kept = {
+        line
+        for line, block in zip(source.origin.tolist(), blocks, strict=True)
+        if _is_kept(translator.kept, [block])
+    }
+    for line in sorted(kept):
+        if translator.inches is not None and translator.inches.search(source.lines[line]):
+            raise _refusal(
+                source, line, "this line is kept as it stands, and its lengths are inches"
+            )
+
+
 class _Spelling:
     """What the speller of a language says to the blocks of its programs, one after the other.
 

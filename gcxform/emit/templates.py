@@ -53,6 +53,8 @@ from gcxform.syntax.tree import CODES, Comment, Expression, Item, Mark, Number, 
 WAITS = "DWELL"
 PLANE_AXES = ("XY", "ZX", "YZ")
 OFFSETS = {"X": "I", "Y": "J", "Z": "K"}
+ANGLE = "R"
+"""The word of a turn (G68) whose unit may hang on a point, as that of an axis does."""
 
 
 class TemplateWriter:
@@ -308,7 +310,7 @@ class TemplateWriter:
             self.target.tool_rule.t_changes
         ):
             self.draft.refuse(word, "T as what changes the tool, or does not")
-        pointed = word.address in self.source.axes and self.target.point_rule.required
+        pointed = word.address in self.source.axes + ANGLE and self.target.point_rule.required
         pointed &= crosses and not self.source.point_rule.required
         if pointed or (isinstance(word.value, Expression) and crosses):
             self.draft.literal(lead, "")

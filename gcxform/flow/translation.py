@@ -59,6 +59,8 @@ class Translator(LineShapes):
     """Names of what they may hang on and do not change: `key` tells that, or it never changes."""
     stepped: ClassVar[re.Pattern[str] | None] = None
     """What stands in each line that `counts`; without it all are asked."""
+    inches: ClassVar[re.Pattern[str] | None] = None
+    """What a line has that puts lengths in inches in force."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 

@@ -13,7 +13,7 @@ from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
 from gcxform.proof.findings import Findings
 from gcxform.syntax.source import Source, lines_in
-from gcxform.toolpath.facts import ABSOLUTE
+from gcxform.toolpath.facts import ABSOLUTE, METRIC
 from gcxform.values import dataclass
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class WrittenBack:
     def fold(self) -> Folded:
         """Return the program. Raises InputError where a line cannot be spelled."""
         from gcxform.emit.folding import Folded
-        from gcxform.emit.respelling import respelled
+        from gcxform.emit.respelling import refuse_kept_inches, respelled
         from gcxform.proof.respelled import check_kept
 
         blocks: list[list[bytes]] = [[] for _ in self.source.origin]
@@ -60,8 +60,10 @@ class WrittenBack:
                 blocks[block].append(line)
         written = [line for part in self.parts for line in part.text.splitlines()]
         check_kept(self.source, written, self.plan.target)
-        given = b"".join(self.given.windows())
-        absolute = ABSOLUTE in facts_after(self.plan.path_passes)
+        given, facts = b"".join(self.given.windows()), facts_after(self.plan.path_passes)
+        if METRIC in facts:
+            refuse_kept_inches(self.source)
+        absolute = ABSOLUTE in facts
         text = respelled(given, self.source, blocks, absolute)
         return Folded(text, tuple(range(len(text.splitlines()))), (), ())
 

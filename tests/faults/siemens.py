@@ -808,6 +808,13 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/call-times]",
     ),
     Mutation(
+        "siemens: a program in inches is a metric one",
+        "gcxform/pipeline/written_back.py",
+        "        if METRIC in facts:\n",
+        "        if False:\n",
+        f"{CASES}[dialects/siemens/metric-of-kept-inches]",
+    ),
+    Mutation(
         "siemens: a line of another file is changed in silence",
         "gcxform/emit/respelling.py",
         "        if text != raw and not translator.is_own(line):\n",

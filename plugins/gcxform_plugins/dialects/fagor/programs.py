@@ -62,6 +62,7 @@ STATE = (
     ),
     *("gone", "pole", "polar", "plane", "turned", "untold"),
 )
+INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
 
 
 class Programs(Flow):
@@ -77,6 +78,7 @@ class Programs(Flow):
     writes = True
     speller = Lines
     kept = KEPT
+    inches = INCHES
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)

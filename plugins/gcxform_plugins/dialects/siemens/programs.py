@@ -79,6 +79,7 @@ STATE = (
     *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
     *("fed", "feed_mode", "pole", "polar", "feed_open", "orientation"),
 )
+INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*700?(?![0-9.])", re.IGNORECASE)
 
 
 class Programs(Learning):
@@ -87,6 +88,7 @@ class Programs(Learning):
     writes = True
     speller = Lines
     kept = KEPT
+    inches = INCHES
     stepped = STEPPED
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
