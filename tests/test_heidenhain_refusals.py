@@ -80,7 +80,6 @@ REFUSED = {
     "a plane": (["PLANE SPATIAL SPA+5 SPB+0 SPC+0 STAY"], "GX210"),
     "another program": (["CALL PGM A"], "GX210"),
     "a label that is not there": (["CALL LBL 4"], "GX223"),
-    "an end of nothing": (["LBL 0"], "GX223"),
     "a label twice": (["LBL 1", "LBL 1", "CALL LBL 1 REP 2"], "GX223"),
     "a repeat ahead": (["CALL LBL 1 REP 2", "LBL 1"], "GX223"),
     "a repeat half done": (["LBL 1", "CALL LBL 1 REP 10/3"], "GX210"),

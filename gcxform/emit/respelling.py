@@ -50,7 +50,7 @@ def respelled(
         changed = made != whole[first:stop]
         changes[line] = changes.get(line, False) or changed
         if changed or stepped:
-            text = _anew(translator, speller, line, made)
+            text = _anew(translator, speller, line, made, whole[first:stop])
             text = raw if text is None and not changed else text
         if text != raw and not translator.is_own(line):
             raise _refusal(source, line, "this line would change, and stands in another program")
@@ -123,9 +123,16 @@ class _Spelling:
             return []
 
 
-def _anew(translator: Translator, speller: _Spelling, line: int, made: list[bytes]) -> str | None:
-    """Return a line for what its blocks became; None where it cannot be said."""
+def _anew(
+    translator: Translator, speller: _Spelling, line: int, made: list[bytes], was: list[bytes]
+) -> str | None:
+    """Return a line for what its blocks became; None where it cannot be said.
+
+    Where only the first became another it says the place at which a cycle is called.
+    """
     text = translator.spelled(line, [each.decode("latin-1") for each in made])
+    if text is None and len(made) > 1 and made[1:] == was[1:]:
+        text = translator.spelled(line, [made[0].decode("latin-1")])
     said = speller.said() if text is None else []
     return translator.replaced(line, said) if said else text
 

@@ -54,18 +54,24 @@ class WrittenBack:
         from gcxform.emit.respelling import refuse_kept_inches, respelled
         from gcxform.proof.respelled import check_kept
 
-        blocks: list[list[bytes]] = [[] for _ in self.source.origin]
-        for part in self.parts:
-            for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
-                blocks[block].append(line)
-        written = [line for part in self.parts for line in part.text.splitlines()]
-        check_kept(self.source, written, self.plan.target)
         given, facts = b"".join(self.given.windows()), facts_after(self.plan.path_passes)
         if METRIC in facts:
             refuse_kept_inches(self.source)
-        absolute = ABSOLUTE in facts
-        text = respelled(given, self.source, blocks, absolute)
+        absolute, text = ABSOLUTE in facts, given
+        if not self._stays or (absolute and self.source.translator.counting_lines()):
+            blocks: list[list[bytes]] = [[] for _ in self.source.origin]
+            for part in self.parts:
+                for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
+                    blocks[block].append(line)
+            written = [line for part in self.parts for line in part.text.splitlines()]
+            check_kept(self.source, written, self.plan.target)
+            text = respelled(given, self.source, blocks, absolute)
         return Folded(text, tuple(range(len(text.splitlines()))), (), ())
+
+    @property
+    def _stays(self) -> bool:
+        """Whether what was written for the blocks is what they were."""
+        return b"".join(part.text for part in self.parts) == self.source.text
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program says what has been proved. Raises GcxformError."""
@@ -74,9 +80,10 @@ class WrittenBack:
         del account
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
-        blocks = [line for part in self.parts for line in part.text.splitlines()]
         known = self.source if self._is_as_read(folded, reading) else None
-        check_respelled(written, blocks, self.plan.target, reading, known)
+        if known is None or not self._stays:
+            blocks = [line for part in self.parts for line in part.text.splitlines()]
+            check_respelled(written, blocks, self.plan.target, reading, known)
         if findings.output_line:
             of = [line for part in self.parts for line in part.source.tolist()]
             findings.output_line = self.source.line_of(of[findings.output_line - 1] + 1)

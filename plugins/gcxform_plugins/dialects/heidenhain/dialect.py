@@ -47,6 +47,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | tool 0 | has no length | 640, p. 170 |
 | CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |
 | CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |
+| LBL 0 to which no call has led | passed over, which the certificate says | a simulator |
 | END PGM | ends the program, as M2 and M30 do | [K] |
 | cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
 | TRANS DATUM | as cycle 7; not beside it | TNC7, D6 of the facts |

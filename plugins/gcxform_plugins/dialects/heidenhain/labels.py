@@ -25,6 +25,7 @@ CHOSEN = re.compile(r"CALL\s+SELECTED\s+PGM\s*", re.IGNORECASE)
 END = ("", None)
 DEEPEST = 8  # calls within calls on the control that takes the fewest
 MOST = 65534
+PASSED = "LBL 0 to which no call has led is passed over"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,14 +75,15 @@ class Labels(FreeContours):
         return self._labels[part.start]
 
     def label(self, item: gx.Item) -> list[str]:
-        """LBL n is a place; LBL 0 goes back to where the subprogram was called."""
+        """LBL n is a place; LBL 0 goes back to where the subprogram was called, if one was."""
         match = LABEL.fullmatch(item.name)
         if match is None:
             self.refuse("a label that is a parameter", item)
         if _name(match[1], match[2]) == "0":
-            if not self.calls or self.calls[-1].lines is not None:
-                raise self.refusal("GX223", "LBL 0 ends a subprogram, and none was called", item)
-            self.go_back()
+            if self.calls and self.calls[-1].lines is None:
+                self.go_back()
+            else:
+                self.assumed[PASSED] = None
         return []
 
     def go_back(self) -> None:

@@ -36,6 +36,8 @@ PLAIN = re.compile(
 """And that neither turn nor tilt what follows, whatever they say."""
 SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
 HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
+TITLE = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?\*")
+"""A structure block: a text."""
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
 NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+[ \t]*)?")
 FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
@@ -218,7 +220,7 @@ class Programs(Runs):
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
-        return STEPPED.search(code(line)) is not None
+        return STEPPED.search(code(line)) is not None and not TITLE.match(line)
 
     def closing(self) -> Iterator[str]:
         """Say which lines are kept. Raises InputError for a program that breaks off."""
