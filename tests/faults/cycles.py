@@ -231,6 +231,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/haas/patterns-without-cycle]",
     ),
     Mutation(
+        "comments: a percent sign gets into the file of a Fanuc",
+        "plugins/gcxform_plugins/dialects/fanuc.py",
+        'lower_case=False, acts_anywhere="%"',
+        "lower_case=False",
+        "tests/test_corpus.py::test_case[dialects/across/percent-in-a-comment]",
+    ),
+    Mutation(
         "cycles: two controls have one and the same parameter of pecks",
         "gcxform/pipeline/plan.py",
         "same and not expands, same and not folds",

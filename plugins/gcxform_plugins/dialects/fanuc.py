@@ -32,6 +32,7 @@
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
 | G76 | the shift in the hole is a parameter's: stays, to the same control; else refused |
 | G87, G88 | depend on parameters or on the operator: refused |
+| `%` in a comment | ends the file there: none is written from programs of other controls |
 | M29 | the tap that follows is in step with the spindle: it moves nothing itself |
 | G96 | changes the speed of the spindle and no path |
 | G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
@@ -194,7 +195,7 @@ class Fanuc(gx.Dialect):
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
     program_rule = gx.ProgramRule(has_title=True)
-    text_rule = gx.TextRule(lower_case=False)
+    text_rule = gx.TextRule(lower_case=False, acts_anywhere="%")
     block_rule = gx.BlockRule(
         last_code_wins=True,
         mill=True,
