@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import random
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -441,3 +443,36 @@ def test_a_long_program_of_contours_is_cut_between_them(monkeypatch: pytest.Monk
     assert found == [b"G17 G40\nX0 Y0\n" + one, two + end]
     beside = [b"X0\nG41 D1 X1\nG40 X3 Y3 G41 D2\nX5\n", b"G40 X7 Y7\n"]
     assert list(whole_stretches(iter(beside))) == [b"X0\n", beside[0][3:] + beside[1]]
+
+
+PIECES = (b"X1\n", b"G41 D1 X2\n", b"G40\n", b"G40 X1 Y2\n", b"Y3\n", b"Z1\n", b"X1 Y1\n")
+PIECES += (b"G40 X1 Y1 G42\n", b"(G41) X1\n", b"; G40\n", b"g 042\n", b"G40 X3\r")
+
+
+def clean(text: bytes) -> set[int]:
+    """Return where lines begin before which no stretch is open, line by line."""
+    found, at, begun, off, seen = {0}, 0, False, False, set[bytes]()
+    for line in text.splitlines(keepends=True):
+        bare = re.sub(rb"\([^)]*\)|;.*", b"", line).upper()
+        for word in re.findall(rb"G *0*4([012])|([XYZ])", bare):
+            if word[0]:
+                begun, off, seen = True, word[0] == b"0", set()
+            elif begun and off:
+                seen.add(word[1])
+                begun = len(seen) < 2
+        at += len(line)
+        found |= set() if begun else {at}
+    return found
+
+
+@pytest.mark.parametrize("seed", range(400))
+def test_stretches_are_cut_where_none_is_open(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gcxform.pipeline.cutter_comp.SMALL", 0)
+    draw = random.Random(seed)
+    texts = [
+        b"".join(draw.choice(PIECES) for _ in range(draw.randint(1, 5)))
+        for _ in range(draw.randint(1, 5))
+    ]
+    found = list(whole_stretches(iter(texts)))
+    assert b"".join(found) == b"".join(texts)
+    assert {*accumulate(map(len, found[:-1]))} <= clean(b"".join(texts))

@@ -80,7 +80,7 @@ class Writer:
 
 
 @pytest.mark.skipif(not rs274.available(), reason="rs274 (LinuxCNC) is not installed")
-@seeds_kit.shares(20_000 if seeds_kit.LONG else 120, 40)
+@seeds_kit.shares(20_000 if seeds_kit.LONG else 200, 100)
 def test_frames_mean_the_same_there(seeds: range) -> None:
     written = 0
     for seed in seeds:
@@ -103,4 +103,4 @@ def test_frames_mean_the_same_there(seeds: range) -> None:
         if target == "linuxcnc":
             differs = shop.differs(wanted, by_linuxcnc(found.text.decode()))
             assert differs is None, f"{names}: {differs}\n{text}\n{found.text.decode()}"
-    assert written > len(seeds) // 20, "nearly all was refused"
+    assert written > len(seeds) // 8, "nearly all was refused"

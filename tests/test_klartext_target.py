@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from heidenhain_kit import DIALECT, TOOLS, program, read
 from seeds_kit import LONG
@@ -17,6 +18,7 @@ import gcxform as gx
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
+from gcxform.proof.spelled_out import _lost as lost
 from gcxform.proof.spelled_out import _same_side as same_side
 
 DIALECTS = default_registry().dialects
@@ -162,3 +164,19 @@ def test_a_datum_is_shifted_by_words_of_one_line():
 def test_two_ways_to_shift_a_datum_are_not_mixed(shifts):
     with pytest.raises(gx.GcxformError, match="TRANS DATUM"):
         words(*shifts, "L X+1 FMAX")
+
+
+def test_an_axis_that_is_lost_in_one_program_alone_is_seen():
+    """But Z where a length that nobody has said begins to count, or ends to."""
+    text = b"G21 G17 G90 G94\nG0 X0 Y0 Z5\nG49\nG53 G0 Z50\nG43 H1\nG0 X1 Y1\nG0 Z7\nM2\n"
+    path = gx.read(text, DIALECTS["linuxcnc"], start=START).path
+    assert not lost(path, path).any()
+    for row in range(len(path)):
+        for axis in range(3):
+            other = path.lost.copy()
+            other[row] ^= 1 << axis
+            seen = lost(path, path.replace(lost=other))
+            begins = np.isnan([path.frames[path.frame[k]].tool[2] for k in (max(row - 1, 0), row)])
+            assert seen.tolist() == [k == row for k in range(len(path))] or (
+                axis == 2 and begins[0] != begins[1] and not seen.any()
+            )

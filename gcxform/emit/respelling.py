@@ -23,21 +23,21 @@ HINT = "let the CAM write plain moves in its place, or write for another dialect
 
 
 def respelled(
-    given: bytes, source: Translated, blocks: list[list[bytes]], absolute: bool = False
+    given: bytes,
+    source: Translated,
+    blocks: list[list[bytes]],
+    counting: frozenset[int] = frozenset(),
 ) -> bytes:
     """Return a program for its blocks as they were written: lists of lines, by block.
 
-    `absolute`: words that count from where an axis stands are written as positions, but for lines
-    whose blocks stay and that no other line can stand for: steps of a loop, or beside a parameter.
+    Words of lines that are `counting` from where an axis stands are written as positions, but for
+    lines whose blocks stay and that no other can stand for: steps of a loop, or by a parameter.
     Raises InputError where a line cannot be spelled, or would differ between its executions.
     """
     new: dict[int, str] = {}
     changes: dict[int, bool] = {}
     whole, translator = source.text.splitlines(), source.translator
-    counting = translator.counting_lines() if absolute else frozenset[int]()
     at_stake = _changing(source, whole, blocks) | counting
-    if not at_stake:
-        return given
     speller = _Spelling(translator, whole)
     for line, first, stop in _runs(source):
         speller.met(blocks[first:stop])
@@ -73,18 +73,13 @@ def refuse_kept_inches(source: Translated) -> None:
 
     Raises InputError.
     """
-    translator = source.translator
-    blocks = source.text.splitlines()
-    kept = {
-        line
-        for line, block in zip(source.origin.tolist(), blocks, strict=True)
-        if _is_kept(translator.kept, [block])
-    }
-    for line in sorted(kept):
-        if translator.inches is not None and translator.inches.search(source.lines[line]):
-            raise _refusal(
-                source, line, "this line is kept as it stands, and its lengths are inches"
-            )
+    translator, said = source.translator, source.text.splitlines()
+    if translator.inches is None:
+        return
+    for line, block in zip(source.origin.tolist(), said, strict=True):
+        if _is_kept(translator.kept, [block]) and translator.inches.search(source.lines[line]):
+            message = "this line is kept as it stands, and its lengths are inches"
+            raise _refusal(source, line, message)
 
 
 class _Spelling:

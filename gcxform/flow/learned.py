@@ -25,7 +25,7 @@ from gcxform.values import dataclass
 MARK = re.compile("\ue000([0-9]+)\ue001")
 MOST = 4096  # steps that are kept
 BEFORE = 1_000_000  # slots from here on are places of axes before the line
-FEW = 8  # lines of which all are looked at for where axes are told to be
+SOON = 8  # known lines in a row, behind which it is worth while to look for more at once
 ANY, CODE, DIGITS = "any", "code", "digits"
 """What the numbers of an item may be: any; those of this very line; any that have digits alone."""
 Numbers = Sequence[str]
@@ -146,6 +146,7 @@ class Learned:
 
     node   the state, while lines are known; None where it is that of the translator
     ends   where axes were told to be since
+    row    how many of them there were, one by one
     """
 
     def __init__(self, translator: Learner) -> None:
@@ -153,6 +154,7 @@ class Learned:
         self.nodes: dict[Hashable, Node] = {}
         self.node: Node | None = None
         self.ends: dict[str, str] = {}
+        self.row = 0
         self.count = 0
 
     def blocks(self, shape: Hashable, slots: Slots, numbers: Numbers) -> list[str] | None:
@@ -166,6 +168,7 @@ class Learned:
         for axis, slot in step.ends:
             self.ends[axis] = numbers[slot]
         self.node = step.behind
+        self.row += 1
         return step.said(numbers)
 
     def stretch(self, ahead: Ahead, lines: range, shapes: Mapping[str, Learnt]) -> list[str]:
@@ -195,13 +198,11 @@ class Learned:
 
     def _tell(self, steps: Sequence[Step], starts: Sequence[int], numbers: Numbers) -> None:
         """Take note of where axes are told to be behind lines: what the last of each says."""
-        first = 0
-        if len(steps) > FEW:
-            axes = {axis for step in {*steps} for axis, _ in step.ends}
-            first = len(steps) - 1
-            while first and axes:
-                axes -= {axis for axis, _ in steps[first].ends}
-                first -= 1
+        axes = {axis for step in {*steps} for axis, _ in step.ends}
+        first = len(steps) - 1
+        while first and axes:
+            axes -= {axis for axis, _ in steps[first].ends}
+            first -= 1
         for step, at in zip(steps[first:], starts[first:], strict=True):
             for axis, slot in step.ends:
                 self.ends[axis] = numbers[at + slot]
@@ -222,7 +223,7 @@ class Learned:
         if self.node is not None:
             self.translator.told().update(self.ends)
             self.translator.take_key(self.node.key)
-            self.node, self.ends = None, {}
+            self.node, self.ends, self.row = None, {}, 0
 
     # --- learning ---
 

@@ -94,6 +94,10 @@ def _run(
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()
             blocks += found
+            if len(found) == 1:  # most of a program that computes: two ranges take as long again
+                origin.append(line)
+                visits.append(translator.visit)
+                continue
             origin += range(line, line + len(found))
             visits += range(translator.visit - len(found) + 1, translator.visit + 1)
     except InputError as error:

@@ -25,7 +25,7 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item
-from gcxform.flow.learned import Learned
+from gcxform.flow.learned import SOON, Learned
 from gcxform.flow.line_shapes import COMMENT, LineShapes, Shape
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
@@ -194,8 +194,8 @@ class Translator(LineShapes):
             if self.annexed is not None and self.at in self.annexed.seams:
                 self.at_end()
                 continue
-            first = self.at
-            if known := self._stretch():
+            first, learned = self.at, self._learned
+            if learned is not None and learned.row >= SOON and (known := self._stretch(learned)):
                 left -= len(known)
                 yield first, known
                 continue
@@ -238,14 +238,11 @@ class Translator(LineShapes):
             self.line, self.at = self.at, self.at + 1
             self.visit += 1
 
-    def _stretch(self) -> list[str]:
+    def _stretch(self, learned: Learned) -> list[str]:
         """Return the blocks of the lines from here on that are known, one for each; go on to them.
 
         The translator is not touched by these.
         """
-        learned = self._learned
-        if learned is None or learned.node is None:
-            return []
         ahead, k = self._split_ahead(self.at)
         stop = k + len(self.lines) - self.at
         if self.annexed is not None:

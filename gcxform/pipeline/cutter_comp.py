@@ -82,39 +82,58 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
     looked for are the letters; a text that is cut elsewhere is refused by the pass. A long one that
     ends within a contour is cut before it.
     """
-    waiting = b""
+    waiting: list[bytes] = []
+    size, stretch = 0, _Stretch()
     for text in texts:
-        waiting += text
-        at = len(waiting)
-        if has_sign(CODE, waiting):
-            at = _last_left(COMMENT.sub(lambda found: b" " * len(found[0]), waiting).upper())
-        if at == len(waiting) or (at and at > SMALL):
-            yield waiting[:at]
-            waiting = waiting[at:]
-    if waiting:
-        yield waiting
+        if stretch.begins >= 0 or has_sign(CODE, text):
+            stretch.follow(COMMENT.sub(lambda found: b" " * len(found[0]), text).upper(), size)
+        waiting.append(text)
+        size += len(text)
+        at = stretch.begins if stretch.begins >= 0 else size
+        if at == size or at > SMALL:
+            whole = b"".join(waiting)
+            yield whole[:at]
+            waiting, size = [whole[at:]], size - at
+            stretch.begins -= at if stretch.begins >= 0 else 0
+    if size:
+        yield b"".join(waiting)
 
 
-def _last_left(plain: bytes) -> int:
-    """Return where the stretch begins that is open at the end of a text; the end if none is.
+class _Stretch:
+    """The stretch that is open where a text ends: it `begins` there, or below 0 at none.
 
-    None is open where the text begins.
+    One that begins in the line in which another is left is a part of that. `off` is whether G40 was
+    the last code, `seen` the axes that have been named since.
     """
-    codes = [*CODE.finditer(plain)]
-    begins, before, left = -1, 0, 0  # where a stretch is open, the one before, where that is left
-    for found, behind in zip(codes, [*(m.start() for m in codes[1:]), len(plain)], strict=True):
-        line = max(plain.rfind(b"\n", 0, found.start()), plain.rfind(b"\r", 0, found.start())) + 1
-        if begins < 0 and line >= left:
-            begins = line
-        elif begins < 0:  # in the line in which the last one is left
-            begins = before
-        before, seen = begins, set[bytes]()
-        for word in AXIS.finditer(plain, found.end(), behind) if found[1] == b"0" else ():
-            seen.add(word[0])
-            if len(seen) > 1:
-                begins, left = -1, word.end()
-                break
-    return len(plain) if begins < 0 else begins
+
+    def __init__(self) -> None:
+        self.begins = -1
+        self.off = False
+        self.seen: set[bytes] = set()
+
+    def follow(self, plain: bytes, before: int) -> None:
+        """Go on through a text without comments, with so many bytes before it."""
+        last, left = self.begins, -1  # where the last one began, and where in this text it was left
+        codes = [*CODE.finditer(plain)]
+        left = self._leave(plain, 0, codes[0].start() if codes else len(plain), left)
+        for k, code in enumerate(codes):
+            line = 1 + max(plain.rfind(end, 0, code.start()) for end in (b"\n", b"\r"))
+            if self.begins < 0:
+                self.begins = last if line < left else before + line
+            last, self.off, self.seen = self.begins, code[1] == b"0", set()
+            behind = codes[k + 1].start() if k + 1 < len(codes) else len(plain)
+            left = self._leave(plain, code.end(), behind, left)
+
+    def _leave(self, plain: bytes, at: int, behind: int, left: int) -> int:
+        """Look for two axes behind G40; return where they are named, or what was known."""
+        if self.begins < 0 or not self.off:
+            return left
+        for word in AXIS.finditer(plain, at, behind):
+            self.seen.add(word[0])
+            if len(self.seen) > 1:
+                self.begins = -1
+                return word.end()
+        return left
 
 
 def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:

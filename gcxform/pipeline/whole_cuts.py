@@ -16,7 +16,7 @@ from gcxform.pipeline.plan import Plan
 MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
 LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
 KNOTS = re.compile(rb"[Gg][ \t]*0*5[ \t]*\.[ \t]*([23])0*(?![0-9])")
-DRILLS = re.compile(rb"[Gg][ \t]*(?:7[346]|8[1-9])(?![0-9.])")
+CYCLES = re.compile(rb"[Gg][ \t]*(?:(7[346]|8[1-9])|80)(?![0-9.])")
 PART = 1 << 17  # bytes
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 
@@ -35,18 +35,27 @@ def undivided(texts: Iterator[bytes], plan: Plan) -> Iterator[bytes]:
 
 
 def _in_parts(texts: Iterator[bytes]) -> Iterator[bytes]:
-    """Yield texts in smaller parts once they drill: a line of a canned cycle is many moves."""
+    """Yield texts in smaller parts where they drill: a line of a canned cycle is many moves."""
     drills = False
     for text in texts:
-        drills = drills or DRILLS.search(text) is not None
+        drilled, drills = _drilled(text, drills)
         at = 0
-        while drills and len(text) - at > PART:
+        while 2 * drilled > len(text) and len(text) - at > PART:
             end = text.rfind(b"\n", at, at + PART) + 1
             if not end:
                 break
             yield text[at:end]
             at = end
         yield text[at:]
+
+
+def _drilled(text: bytes, drills: bool) -> tuple[int, bool]:
+    """Return about how many bytes of a text are lines of cycles, and whether one is in force."""
+    found = at = 0
+    for code in CYCLES.finditer(text):
+        found += (code.start() - at) * drills
+        at, drills = code.start(), code[1] is not None
+    return found + (len(text) - at) * drills, drills
 
 
 def whole_cuts(texts: Iterator[bytes]) -> Iterator[bytes]:

@@ -57,15 +57,17 @@ class WrittenBack:
         given, facts = b"".join(self.given.windows()), facts_after(self.plan.path_passes)
         if METRIC in facts:
             refuse_kept_inches(self.source)
-        absolute, text = ABSOLUTE in facts, given
-        if not self._stays or (absolute and self.source.translator.counting_lines()):
+        counting, text = frozenset[int](), given
+        if ABSOLUTE in facts:
+            counting = self.source.translator.counting_lines()
+        if counting or not self._stays:
             blocks: list[list[bytes]] = [[] for _ in self.source.origin]
             for part in self.parts:
                 for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
                     blocks[block].append(line)
             written = [line for part in self.parts for line in part.text.splitlines()]
             check_kept(self.source, written, self.plan.target)
-            text = respelled(given, self.source, blocks, absolute)
+            text = respelled(given, self.source, blocks, counting)
         return Folded(text, tuple(range(len(text.splitlines()))), (), ())
 
     @property
@@ -80,10 +82,9 @@ class WrittenBack:
         del account
         written = Source.of_bytes(folded.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
+        blocks = [line for part in self.parts for line in part.text.splitlines()]
         known = self.source if self._is_as_read(folded, reading) else None
-        if known is None or not self._stays:
-            blocks = [line for part in self.parts for line in part.text.splitlines()]
-            check_respelled(written, blocks, self.plan.target, reading, known)
+        check_respelled(written, blocks, self.plan.target, reading, known)
         if findings.output_line:
             of = [line for part in self.parts for line in part.source.tolist()]
             findings.output_line = self.source.line_of(of[findings.output_line - 1] + 1)

@@ -115,7 +115,9 @@ def _lost(a: Toolpath, b: Toolpath) -> Any:
     """
     differ = a.lost ^ b.lost
     for path in (a, b):
-        differ[np.diff(path.frame, prepend=path.frame[:1]) != 0] &= ~(1 << ALONG)
+        open_ = np.array([np.isnan(frame.tool[ALONG]) for frame in path.frames])[path.frame]
+        begins = np.diff(open_.astype(np.int8), prepend=open_[:1].astype(np.int8)) != 0
+        differ[begins] &= ~(1 << ALONG)
     return differ != 0
 
 

@@ -146,10 +146,17 @@ MUTATIONS = (
         CUTTER,
     ),
     Mutation(
+        "compensated: a stretch ends where another begins",
+        "gcxform/pipeline/cutter_comp.py",
+        "last if line < left else before + line",
+        "before + line",
+        CUTTER,
+    ),
+    Mutation(
         "compensated: windows end inside a stretch",
         "gcxform/pipeline/cutter_comp.py",
-        "    return len(plain) if begins < 0 else begins\n",
-        "    return len(plain)\n",
+        "        at = stretch.begins if stretch.begins >= 0 else size\n",
+        "        at = size\n",
         CUTTER,
     ),
     Mutation(

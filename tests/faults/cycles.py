@@ -238,6 +238,20 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/percent-in-a-comment]",
     ),
     Mutation(
+        "windows: a cycle ends with its window",
+        "gcxform/pipeline/whole_cuts.py",
+        "_drilled(text, drills)",
+        "_drilled(text, False)",
+        "tests/test_whole_cuts.py",
+    ),
+    Mutation(
+        "windows: one hole makes all of them small",
+        "gcxform/pipeline/whole_cuts.py",
+        "2 * drilled > len(text)",
+        "drilled",
+        "tests/test_whole_cuts.py",
+    ),
+    Mutation(
         "cycles: two controls have one and the same parameter of pecks",
         "gcxform/pipeline/plan.py",
         "same and not expands, same and not folds",

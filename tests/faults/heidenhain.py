@@ -919,4 +919,18 @@ MUTATIONS = (
         "    if False:\n",
         "tests/test_corpus.py::test_case[dialects/heidenhain-call-by-steps]",
     ),
+    Mutation(
+        "spelled out: an axis that is lost in one program alone is no difference",
+        SPELLED,
+        "    return differ != 0\n",
+        "    return differ < 0\n",
+        TARGET,
+    ),
+    Mutation(
+        "spelled out: what is lost along a tool is no difference",
+        SPELLED,
+        "        differ[begins] &=",
+        "        differ[:] &=",
+        TARGET,
+    ),
 )

@@ -544,8 +544,8 @@ MUTATIONS = (
     Mutation(
         "learned: of a long run of lines the last alone says where axes are",
         LEARNED,
-        "                axes -= {axis for axis, _ in steps[first].ends}\n",
-        "                break\n",
+        "            axes -= {axis for axis, _ in steps[first].ends}\n",
+        "            break\n",
         LEARNT,
     ),
     Mutation(

@@ -70,9 +70,9 @@ def siemens(seed: int) -> str:
             step = ["R1=R1+1"] if "WHILE" in first else []
             lines += [filled(first, pick), *inner, *step, last]
         rare = pick.random() < 0.04
-        line = pick.choice(SIEMENS if rare else few)
-        alike = pick.randint(3, 30) if pick.random() < 0.1 else 1
-        lines += [filled(line, pick) for _ in range(alike)]
+        turns = [pick.choice(SIEMENS if rare else few), pick.choice(few)]
+        alike = pick.randint(3, 40) if pick.random() < 0.1 else 1
+        lines += [filled(turns[k % 2], pick) for k in range(alike)]
     return "\n".join([*lines, "M30", ""])
 
 
@@ -115,9 +115,11 @@ def test_programs_are_translated_alike(seeds: range) -> None:
         (("X2 Y2", "X3 Y3", "X4 Y4", "X=IC(1) Y5"), "X5 Y5"),
         (("G700", "X1 Y1", "G700", "X2 Y2", "G700", "X3", "G3 X7 CR=2"), "G3 M9000"),
         (
-            ("X1 Y2", "X2", "X3", "X4 Y7", *(f"X{k}" for k in range(5, 30)), "X30 Y=IC(1)"),
+            (*("X1 Y2", "X2") * 8, "X4 Y7", *(f"X{k}" for k in range(5, 30)), "X30 Y=IC(1)"),
             "X30 Y8",
         ),
+        ((*("G700", "X1 Y1", "G700", "X3") * 9, "G3 X7 CR=2"), "G3 M9000"),
+        ((*("G700", "X3", "G700", "X1 Y1") * 9, "G3 X7 Y1 CR=7"), "G3 X7"),
         (("G3 X=3 Y=1 CR=2", "G1 X4", "G3 X=6 Y=1 CR=2", "G1 X=R9", "G3 X=7 Y=1 CR=2"), "G3 M9000"),
     ],
 )
