@@ -87,8 +87,8 @@ def guess_dialect(
     """Return which dialects a program, or the file of that name, may be in.
 
     Two megabytes from its start are looked at. `dialects` are those to choose from, by name; all
-    that are installed if not given; those without a sign of their language are left out. Raises
-    FileError.
+    that are installed if not given; of several, those without a sign of their language are left
+    out. Raises FileError.
     """
     if isinstance(program, Path):
         source = Source.open(program)
@@ -97,7 +97,8 @@ def guess_dialect(
     source = Source.of_bytes(program) if isinstance(program, bytes) else program
     known = default_registry().dialects if dialects is None else dialects
     head = b"".join(islice(source.windows(), WINDOWS))
-    tried = {name: dialect for name, dialect in known.items() if has_signs(head, dialect)}
+    choice = len(known) > 1
+    tried = {name: kind for name, kind in known.items() if not choice or has_signs(head, kind)}
     kin = {name for name in tried if tried[name].kin in known}
     look = _Looks(source, head, tried)
     look.at(tried.keys() - kin)

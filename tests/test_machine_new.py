@@ -227,3 +227,97 @@ def test_the_radius_of_the_tool_in_the_spindle_is_asked_for() -> None:
     for dialect, tools in (("linuxcnc", {"7", "2"}), ("fanuc", {"2"})):
         kind = default_registry().dialect(dialect)
         assert {*used_by(Source.of_bytes(program), kind, Reading()).radii} == tools
+
+
+def asked_of(here: Path, dialect: str, program: str, chain: str | None = None) -> str:
+    """Return what a machine file for one program asks, and what is said beside it."""
+    (here / "part.nc").write_text(program)
+    words = [] if chain is None else ["-x", chain]
+    done = call("machine", "new", "-f", dialect, *words, "part.nc")
+    assert done.exit_code == 0, done.stderr
+    return done.stdout + done.stderr
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    return workplace(tmp_path, monkeypatch)
+
+
+VOLUMETRIC = f"volumetric model={MODEL} outside=clamp"
+HEAD = "%\nO1\nG21 G90 G94 G17 G54\n"
+
+
+def test_an_extruder_has_no_place_in_a_machine(here: Path) -> None:
+    asked = asked_of(here, "marlin", "G21\nG90\nM82\nG28\nG1 X9 Y9 E1 F99\nG28 X\n")
+    assert "[home.G28]\n" in asked
+    assert "E =" not in asked
+    (here / "m.toml").write_text(asked[: asked.index("1 program in")].replace('"?"', "0.0"))
+    done = call("check", "-f", "marlin", "-x", "absolute", "-m", "m.toml", "part.nc")
+    assert done.exit_code == 0, done.stderr
+
+
+def test_letters_of_words_are_no_axes(here: Path) -> None:
+    loop = "#1=0\nWHILE [#1 LT 3] DO1\nG0 X#1\n#1=#1+1\nEND1\nG91 G28 Z0\nM30\n%\n"
+    assert "W =" not in asked_of(here, "fanuc", HEAD + loop)
+    subs = "G21 G90\no1 sub\nG0 X#1\no1 endsub\no1 call [3]\nG28\nM2\n"
+    assert "U =" not in asked_of(here, "linuxcnc", subs)
+    assert "W =" not in asked_of(here, "linuxcnc", "G21 G90\n#<w>=5\nG0 X#<w>\nM2\n")
+    assert 'W = "?"' in asked_of(here, "fanuc", HEAD + loop.replace("X#1", "W#1"))
+
+
+@pytest.mark.parametrize("dialect", ["masso", "uccnc"])
+def test_where_a_cycle_that_stays_ends_is_no_question(here: Path, dialect: str) -> None:
+    cycle = "G0 X0 Y0 Z9\nG83 X1 Y1 Z-9 R2 Q3 F99\nG80\nG91 G0 X3\nG1 Y3\nM30\n"
+    asked = asked_of(here, dialect, "G21 G90 G94 G17 G54\n" + cycle)
+    assert "macro" not in asked
+
+
+def test_a_program_without_signs_of_a_language_is_in_the_one_that_is_said(here: Path) -> None:
+    program = "N10 G90 G71 G17 G54\nN20 G0 X0 Y0 Z10\nN30 G1 X10 F100\nN40 M30\n"
+    assert "1 program in fagor" in asked_of(here, "fagor", program)
+    asked = asked_of(here, "fanuc", "what is this\n")
+    assert "GX101 by 1 of 1 program" in asked
+
+
+def test_codes_that_move_nothing_are_asked_for_where_they_help(here: Path) -> None:
+    lost = "T1 M6 X1.\nM21\nG1 X2. Y5. F99.\nM30\n%\n"
+    modes = "G0 X0 Y0 Z9.\nG91 G1 X1. F99.\nM21\nX1.\nM22\nX1.\nM30\n%\n"
+    for program, chain, codes in (
+        (HEAD + "G0 X0 Y0 Z9.\n" + lost, VOLUMETRIC, "[6, 21]"),
+        (HEAD + modes, "absolute", "[21, 22]"),
+    ):
+        asked = asked_of(here, "fanuc", program, chain)
+        assert "no setting" not in asked
+        for code in codes.strip("[]").split(", "):
+            assert f"M{code} by 1 of 1 program" in asked
+        call("machine", "new", "-f", "fanuc", "-x", chain, "part.nc", "-o", f"{codes}.toml")
+        fill_in(here / f"{codes}.toml", inert_m=codes)
+        done = call("check", "-f", "fanuc", "-x", chain, "-m", f"{codes}.toml", "part.nc")
+        assert done.exit_code == 0, done.stderr
+
+
+def test_several_things_that_lose_a_position_are_asked_for_together(here: Path) -> None:
+    program = HEAD + "G0 X0 Y0 Z9.\nG91 G28 Z0\nM21\nG90 G1 X2. Y5. F99.\nM30\n%\n"
+    asked = asked_of(here, "fanuc", program, VOLUMETRIC)
+    assert "no setting" not in asked
+    assert "[home.G28]" in asked
+    other = program.replace("G0 X0", "T1 M6\nG0 X0").replace("M21\n", "")
+    assert "inert-m" not in asked_of(here, "fanuc", other, VOLUMETRIC)
+
+
+def test_the_tool_in_the_spindle_has_the_length_of_a_code_without_a_number(here: Path) -> None:
+    program = "G21 G90 G94 G17 G54\nT7\nT5 M6\nG43\nG0 X0 Y0 Z9\nM2\n"
+    for chain in (None, VOLUMETRIC):
+        asked = asked_of(here, "linuxcnc", program, chain)
+        assert "[tool.5]" in asked
+        assert "no setting" not in asked
+    assert "[tool.7]" not in asked_of(here, "linuxcnc", program)
+    assert "[tool." not in asked_of(here, "fanuc", program)
+
+
+def test_a_work_offset_that_is_in_force_by_itself_is_used(here: Path) -> None:
+    program = "%\nO1\nG21 G90 G94 G17\nG0 X0 Y0 Z9.\nM30\n%\n"
+    asked = asked_of(here, "fanuc", program)
+    assert "[work-offset.G54]" in asked
+    assert "e.g. part.nc:4\n" in asked
+    assert "[work-offset.G54]" not in asked_of(here, "fanuc", program.replace("G0 X0", "G55 X0"))

@@ -86,14 +86,25 @@ def _with(dialect: Any, names: tuple[str, ...]) -> type[Dialect]:
 
 def _check(dialect: type[Dialect], name: str) -> None:
     """Refuse a code that is none of the machine's own."""
+    if why := _why_not(dialect, name):
+        message = f"[control.macro.{name}]: {dialect.name} {why}, so that it is not kept as a call"
+        raise UsageError.one("GX405", message)
+
+
+def may_be_said(dialect: type[Dialect], call: str) -> bool:
+    """Whether a machine file may say where axes are behind a call: `P9810`, or a code."""
+    return call[0] not in "GM" or not _why_not(dialect, call)
+
+
+def _why_not(dialect: type[Dialect], name: str) -> str:
+    """Return why a code cannot be declared, in words; "" for one of the machine's own."""
     if name in dialect.flow_rule.kept_codes:
-        return
+        return ""
     known = dialect.codes.get(name) if name[0] == "G" else None
     taken = known is not None and (
         known.effect not in (Effect.BARRIER, Effect.CALL) or known.group != ONE_BLOCK
     )
     taken |= name[0] == "M" and int(float(name[1:])) in dialect.m_codes
-    if taken or not dialect.flow_rule.macro_levels:
-        why = "has this code" if taken else "has no calls with values"
-        message = f"[control.macro.{name}]: {dialect.name} {why}, so that it is not kept as a call"
-        raise UsageError.one("GX405", message)
+    if taken:
+        return "has this code"
+    return "" if dialect.flow_rule.macro_levels else "has no calls with values"

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from contextlib import suppress
 from dataclasses import field
+from typing import Final
 
 import numpy as np
 
 from gcxform.catalogue.questions import Question
+from gcxform.contract.own_codes import may_be_said
 from gcxform.diagnostics import InputError, Location
-from gcxform.dialect.dialect import LINEAR, Dialect
+from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.straightened import written_out
+from gcxform.machine.control import INERT as INERT_M
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.meaning import Act, Meaning
 from gcxform.modal.reader import windows_of
@@ -25,7 +28,10 @@ Places = dict[str, Location]
 """Where something is first used, by its name."""
 LENGTHS = frozenset({"length", "length-negative", "length-add", "vectors"})
 ANY = "*"
+PLACED: Final = LINEAR.replace(EXTRUDER, "")
+"""The axes of which a machine file says where zeros and reference points are, but rotary ones."""
 LENGTH_ALONE: Question = ("control", "tool-length-alone")
+INERT: Question = ("control", INERT_M)
 
 
 @dataclass
@@ -34,7 +40,7 @@ class Used:
 
     `own_codes` are M codes that the dialect does not have, `calls` are those that are kept as their
     programs are not at hand; `of_home` are the axes that go there. `length_alone`: a tool length is
-    called without a place along it.
+    called without a place along it. `changes` are codes that change a tool, which may move axes.
     """
 
     first_offset: str = "G54"
@@ -43,17 +49,21 @@ class Used:
     radii: Places = field(default_factory=dict)
     homes: Places = field(default_factory=dict)
     own_codes: Places = field(default_factory=dict)
+    changes: Places = field(default_factory=dict)
     axes: str = "XYZ"
     of_home: dict[str, str] = field(default_factory=dict)
     calls: Places = field(default_factory=dict)
     length_alone: bool = False
 
+    @property
+    def codes(self) -> list[int]:
+        """The M codes behind which positions are lost if no machine file says otherwise."""
+        return sorted(map(int, {**self.own_codes, **self.changes}))
+
     def keep_axes(self, letters: Collection[str]) -> None:
         """Keep the axes that a machine file names, if it names any: it takes no others."""
         if letters:
             self.axes = "".join(axis for axis in self.axes if axis in letters)
-            homes = self.of_home.items()
-            self.of_home = {n: "".join(a for a in axes if a in letters) for n, axes in homes}
 
     def named(self, question: Question) -> Iterator[Question]:
         """Yield the questions that one of all tools, or of a place, stands for in this program."""
@@ -63,6 +73,8 @@ class Used:
             return
         if question == LENGTH_ALONE and not self.length_alone:
             return
+        if question == INERT and not self.codes:
+            return
         if table == "tool" and name == ANY:
             numbers = self.radii if key == ["radius"] else self.lengths
             yield from ((table, number, *key) for number in numbers)
@@ -70,7 +82,8 @@ class Used:
             known = list(self.offsets) or [self.first_offset]
             known = list(self.homes) if table == "home" else known
             for one in known if name == ANY else [name]:
-                yield from ((table, one, axis) for axis in self.of_home.get(one, self.axes))
+                axes = self.of_home.get(one, PLACED)
+                yield from ((table, one, axis) for axis in self.axes if axis in axes)
         else:
             yield question
 
@@ -78,38 +91,70 @@ class Used:
 def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
     """Return what a program uses of its machine, and what it calls, as far as that is written."""
     used = Used(dialect.initial["frame"])
-    used.axes = "".join(axis for axis in source.axes(dialect.axes) if axis in LINEAR)
-    if dialect.translator is not None:
-        return used
+    named = set("XYZ")
     with suppress(InputError):  # as it stands, then
         source = written_out(source, dialect, reading)
     for window, reader in windows_of(source, dialect):
         reader.table.update()
         for number in distinct(window.shape).tolist():
             meaning = reader.table.meanings[number]
+            named |= {*meaning.axes}
             if meaning.acts or meaning.lost_by or "D" in meaning.slots:
                 for line in np.flatnonzero(window.shape == number).tolist():
                     _look(used, dialect, _Block(source, window, meaning, line))
-    if not dialect.cutter_comp.stored:
-        _look_into_spindle(used, source, dialect)
+    used.axes = "".join(axis for axis in dialect.axes if axis in named and axis in PLACED)
+    _look_into_spindle(used, source, dialect)
+    _look_at_first_move(used, source, dialect)
     return used
 
 
 def _look_into_spindle(used: Used, source: Source, dialect: type[Dialect]) -> None:
-    """Note the tools that G41 and G42 take without a D: those that are in the spindle there."""
+    """Note the tools that G41 without a D, and G43 without an H, take: those in the spindle."""
+    of_comp = not dialect.cutter_comp.stored
+    of_length = dialect.tool_rule.g43_takes_spindle_tool
     selected = spindle = 0.0
-    for window, reader in windows_of(source, dialect):
+    for window, reader in windows_of(source, dialect) if of_comp or of_length else ():
         reader.table.update()
         meanings = reader.table.meanings
-        said = ("T" in m.slots or m.changes_tool or m.compensates for m in meanings)
-        known = np.fromiter(said, np.bool_, len(meanings))
+        asks = [
+            (of_comp and m.compensates and "D" not in m.slots, of_length and _takes_no_h(m))
+            for m in meanings
+        ]
+        said = ("T" in m.slots or m.changes_tool for m in meanings)
+        known = np.fromiter(map(any, zip(said, map(any, asks), strict=True)), np.bool_, len(asks))
         for line in np.flatnonzero(known[window.shape]).tolist():
-            block = _Block(source, window, meanings[int(window.shape[line])], line)
+            number = int(window.shape[line])
+            block = _Block(source, window, meanings[number], line)
             slots = block.meaning.slots
             selected = block.value(slots["T"]) if "T" in slots else selected
             spindle = selected if block.meaning.changes_tool else spindle
-            if block.meaning.compensates and "D" not in slots and spindle > 0:
-                used.radii.setdefault(f"{spindle:g}", block.place)
+            for asked, places in zip(asks[number], (used.radii, used.lengths), strict=True):
+                if asked and spindle > 0:
+                    places.setdefault(f"{spindle:g}", block.place)
+
+
+def _takes_no_h(meaning: Meaning) -> bool:
+    """Whether a block has a code of a tool length without the H that says which."""
+    return any(
+        act.name == "length" and all(letter != "H" for letter, _ in act.slots)
+        for act in meaning.acts
+    )
+
+
+def _look_at_first_move(used: Used, source: Source, dialect: type[Dialect]) -> None:
+    """Note the work offset that is in force at the start, if axes move before one is named."""
+    for window, reader in windows_of(source, dialect):
+        reader.table.update()
+        meanings = reader.table.meanings
+        works = [any(act.name == "work" for act in m.acts) for m in meanings]
+        moves = [bool(m.axes) for m in meanings]
+        either = np.array([*map(max, works, moves)], np.bool_)[window.shape]
+        for line in np.flatnonzero(either)[:1].tolist():
+            meaning = meanings[int(window.shape[line])]
+            if not works[int(window.shape[line])]:
+                place = _Block(source, window, meaning, line).place
+                used.offsets.setdefault(used.first_offset, place)
+            return
 
 
 @dataclass(frozen=True)
@@ -137,15 +182,18 @@ def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     meaning = block.meaning
     if meaning.call:
         called = f"P{block.value(dict(meaning.call_slots).get('P', 0)):g}"
-        used.calls.setdefault(called if meaning.call == NUMBERED else meaning.call, block.place)
+        called = called if meaning.call == NUMBERED else meaning.call
+        if may_be_said(dialect, called):
+            used.calls.setdefault(called, block.place)
     for act in meaning.acts:
         _act(used, dialect, act, block)
     number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0
     if meaning.compensates and not meaning.is_length("D") and number > 0:
         used.radii.setdefault(f"{number:g}", block.place)
     changes = {number for number, code in dialect.m_codes.items() if code.group == "tool"}
-    for number in meaning.lost_by - changes - {-1}:
-        used.own_codes.setdefault(str(number), block.place)
+    for number in meaning.lost_by - {-1}:
+        codes = used.changes if number in changes else used.own_codes
+        codes.setdefault(str(number), block.place)
 
 
 def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
@@ -162,6 +210,5 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
         used.lengths.setdefault(f"{words['T']:g}", block.place)
     elif act.name == "home":
         name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
-        axes = used.of_home.get(name, "") + (block.meaning.axes or used.axes)
-        used.of_home[name] = "".join(axis for axis in LINEAR if axis in axes)
+        used.of_home[name] = used.of_home.get(name, "") + (block.meaning.axes or PLACED)
         used.homes.setdefault(name, block.place)

@@ -16,7 +16,7 @@ from typing import Any, Final
 import msgspec
 
 from gcxform.catalogue.questions import OF_THE_STATE, PIPELINE, Question, kind_of, questions
-from gcxform.cli.program.machine_needs import ANY, LENGTH_ALONE, Used, used_by
+from gcxform.cli.program.machine_needs import ANY, INERT, LENGTH_ALONE, Used, used_by
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.machine.control import inert_of, settings_of
 from gcxform.machine.machine import Machine, Tool
@@ -42,6 +42,7 @@ WHERE_LOST: Final[tuple[Question, ...]] = (
     ("work-offset", ANY, "X"),
     ("control", "macro", ANY, "ends"),
     LENGTH_ALONE,
+    INERT,
 )
 
 Look = Callable[[Pipeline, Source], list[Diagnostic]]
@@ -106,7 +107,6 @@ class Visit:
         if pipeline.machine is not None:
             self.used.keep_axes(pipeline.machine.axes)
         self.so_far = Missing()
-        self.tried_where_lost = False
 
     def run(self, seen: Iterable[Diagnostic]) -> Missing:
         """Return why the program is refused, all of it; `seen` speaks against it already."""
@@ -151,9 +151,14 @@ class Visit:
         asked: dict[Question, list[Any]] = {}
         for question, value in questions(each.hint):
             for one in self.used.named(question):
-                if one not in self.so_far.given and not (behind and _of_the_state(one)):
+                if self._is_new(one, value) and not (behind and _of_the_state(one)):
                     asked.setdefault(one, []).append(ON_TRIAL.get(kind_of(one), value))
         return asked
+
+    def _is_new(self, question: Question, value: Any) -> bool:
+        """Whether nothing is given for a question, or a list in which something is missing."""
+        given = self.so_far.given.get(question)
+        return given is None or (isinstance(value, list) and not {*value} <= {*given})
 
     def _add(self, key: object, each: Diagnostic, behind: str) -> Cause:
         cause = self.so_far.causes.setdefault(key, Cause(behind=behind))
@@ -173,31 +178,48 @@ class Visit:
     # --- what is answered ---
 
     def _answer(self, new: Mapping[Question, list[Any]]) -> None:
-        """Put values on trial; of several, the one with which least is found."""
+        """Put values on trial; of several, the one with which least is found, of lists all."""
         given = self.so_far.given
-        given |= {question: values[0] for question, values in new.items()}
+        lists = {q: values for q, values in new.items() if isinstance(values[0], list)}
+        for question, values in lists.items():
+            given[question] = sorted({*given.get(question, ())}.union(*values))
+        given |= {q: values[0] for q, values in new.items() if q not in lists}
         for question, values in new.items():
-            if len(values) > 1:
+            if len(values) > 1 and question not in lists:
                 counts = {k: len(self._again({**given, question: v})) for k, v in enumerate(values)}
                 given[question] = values[min(counts, key=lambda k: counts[k])]
 
     def _helps_where_lost(self, errors: list[Diagnostic]) -> bool:
-        """Whether a position that a block has lost is known if the machine file says more."""
-        if self.tried_where_lost or not any(each.code in LOST for each in errors):
+        """Whether a position that a block has lost is known if the machine file says more.
+
+        All that may help is tried at once, and what helps no less without it is left out again.
+        """
+        lost = [each for each in errors if each.code in LOST]
+        more = {whole: new for whole in WHERE_LOST if (new := self._trials(whole))} if lost else {}
+        if not (more and (ended := self._ended(lost, more))):
             return False
-        self.tried_where_lost = True
-        for whole in WHERE_LOST:
-            new = (q for q in self.used.named(whole) if q not in self.so_far.given)
-            more = {q: ON_TRIAL.get(kind_of(q), 0.0) for q in new}
-            left = self._again({**self.so_far.given, **more}) if more else errors
-            ended = [each for each in errors if each.code in LOST and each not in left]
-            if ended:
-                for each in ended:
-                    self.so_far.causes.pop((each.code, each.message), None)
-                    self._add(whole, each, "").asks |= more.keys()
-                self.so_far.given |= more
-                return True
-        return False
+        for whole in reversed(list(more)):
+            fewer = {other: new for other, new in more.items() if other != whole}
+            if self._ended(ended, fewer) == ended:
+                more = fewer
+        for each in ended:
+            self.so_far.causes.pop((each.code, each.message), None)
+            self._add(tuple(more), each, "").asks.update(*more.values())
+        for new in more.values():
+            self.so_far.given |= new
+        return True
+
+    def _trials(self, whole: Question) -> Given:
+        """Return values on trial for all that a question stands for, and nothing is given for."""
+        new = (q for q in self.used.named(whole) if q not in self.so_far.given)
+        codes = {INERT: self.used.codes}
+        return {q: codes.get(q, ON_TRIAL.get(kind_of(q), 0.0)) for q in new}
+
+    def _ended(self, lost: list[Diagnostic], more: Mapping[Question, Given]) -> list[Diagnostic]:
+        """Return the findings that are gone if more is said."""
+        given = {question: value for new in more.values() for question, value in new.items()}
+        left = self._again({**self.so_far.given, **given})
+        return [each for each in lost if each not in left]
 
 
 def _errors(seen: Iterable[Diagnostic]) -> list[Diagnostic]:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from gcxform.catalogue.questions import PIPELINE, Question
-from gcxform.cli.program.machine_needs import ANY, Used
+from gcxform.cli.program.machine_needs import ANY, INERT, Places, Used
 from gcxform.cli.program.missing import Look, Visit
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
@@ -24,7 +24,6 @@ from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
 from gcxform.values import dataclass
 
-INERT: Final = ("control", "inert-m")
 LEFT_SHOWN: Final = 20
 
 
@@ -68,6 +67,8 @@ class Survey:
         self.programs += 1
         self._uses(source.name, visits[0].used)
         for cause in (cause for each in found for cause in each.causes.values()):
+            if INERT in cause.asks:
+                self._codes(source.name, visits[0].used.changes)
             for question in cause.asks:
                 tally = self.needed.setdefault(question, Tally())
                 tally.add(source.name, cause.found[0].where)
@@ -86,7 +87,10 @@ class Survey:
         for question, places in whole:
             for one in used.named(question) if places else ():
                 self.used.setdefault(one, Tally()).add(program, places.get(one[1]))
-        for code, where in used.own_codes.items():
+        self._codes(program, used.own_codes)
+
+    def _codes(self, program: str, codes: Places) -> None:
+        for code, where in codes.items():
             self.own_codes.setdefault(code, Tally()).add(program, where)
 
     # --- in words ---
@@ -128,7 +132,11 @@ class Programs(NamedTuple):
 
 
 def dialect_of(files: Iterable[Path], known: Mapping[str, type[Dialect]]) -> Programs:
-    """Return in which dialect files are best read together. Raises UsageError for several."""
+    """Return in which dialect files are best read together. Raises UsageError for several.
+
+    Where one alone is known it is that one: files in which nothing fits are read if no other is,
+    since their findings say more than that they do not fit.
+    """
     scores: Counter[str] = Counter()
     programs: list[Path] = []
     others: list[Path] = []
@@ -137,6 +145,9 @@ def dialect_of(files: Iterable[Path], known: Mapping[str, type[Dialect]]) -> Pro
         (programs if guess.dialects else others).append(path)
         for name in guess.evidence if guess.dialects else ():
             scores[name] += guess.score(name)  # type: ignore[assignment]
+    if len(known) == 1:
+        (said,) = known
+        return Programs(said, programs or others, others if programs else [])
     best = [name for name in scores if scores[name] == max(scores.values())]
     if len(best) != 1:
         several = f"{' or '.join(sorted(best))} fit as well" if best else "none fits"
