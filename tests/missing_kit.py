@@ -21,6 +21,8 @@ ANSWERS: dict[str, Any] = {
     "units": "mm",
     "argument-list": "II",
     "tip-at-start": "off",
+    "cutter-comp-corners": "arc",
+    "cutter-comp-entry": "own",
     "radius": 0.001,
     "null-compare": "zero",
     "ends": "unknown",

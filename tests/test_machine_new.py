@@ -49,7 +49,8 @@ def fill_in(file: Path, **answers: str) -> None:
 
 
 def filled(shop: Path) -> None:
-    fill_in(shop.parent / "m.toml", inert_m="[21]")
+    comp = {"cutter_comp_corners": '"arc"', "cutter_comp_entry": '"own"'}
+    fill_in(shop.parent / "m.toml", inert_m="[21]", **comp)
     fill_in(shop.parent / "p.toml", increment='"IS-B"')
 
 
@@ -321,3 +322,25 @@ def test_a_work_offset_that_is_in_force_by_itself_is_used(here: Path) -> None:
     assert "[work-offset.G54]" in asked
     assert "e.g. part.nc:4\n" in asked
     assert "[work-offset.G54]" not in asked_of(here, "fanuc", program.replace("G0 X0", "G55 X0"))
+
+
+CONTOUR = HEAD + "G0 X-10. Y0 Z9.\nG41 D1 G1 X0 F99.\nY20.\nX20.\nG40 Y30.\nM30\n%\n"
+
+
+@pytest.mark.parametrize("chain", [None, "cutter-comp"])
+def test_how_a_contour_is_resolved_is_asked_with_the_radius(here: Path, chain: str | None) -> None:
+    asked = asked_of(here, "fanuc", CONTOUR, chain)
+    assert 'cutter-comp-corners = "?"' in asked
+    assert 'cutter-comp-entry = "?"' in asked
+    assert 'radius = "?"' in asked
+    assert "no setting" not in asked
+    assert "cutter-comp" not in asked_of(here, "linuxcnc", CONTOUR)
+    call("machine", "new", "-f", "fanuc", "part.nc", "-o", "m.toml")
+    said = {"cutter_comp_corners": '"linear"', "cutter_comp_entry": '"next"'}
+    fill_in(here / "m.toml", **said)
+    words = ("run", "-q", "-f", "fanuc", "--no-stamp", "part.nc")
+    done = call(*words, "-m", "m.toml", "-x", "cutter-comp")
+    same = call(*words, "-m", "m.toml", "-x", "cutter-comp corners=linear entry=next")
+    other = call(*words, "-m", "m.toml", "-x", "cutter-comp corners=arc entry=own")
+    assert done.exit_code == same.exit_code == 0, done.stderr
+    assert done.stdout == same.stdout != other.stdout

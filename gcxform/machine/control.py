@@ -28,6 +28,9 @@ LIKE: Final = "like"
 """The key that names a preset, which is gone when the settings are read."""
 D_IS: Final = "d-is"
 """The setting that says what `d` of a tool is."""
+COMP_CORNERS: Final = "cutter-comp-corners"
+COMP_ENTRY: Final = "cutter-comp-entry"
+"""The settings that say how the control resolves a contour under cutter compensation."""
 _OWN_CODE = re.compile("M[1-9][0-9]{2,3}")
 
 
@@ -102,6 +105,8 @@ declare(
         _Code("tip-on", "the M code from which the control follows the tip of the tool"),
         _Code("tip-off", "the M code from which it does not"),
         Setting(D_IS, "what D calls: 5004#2 of fanuc, Setting 40 of haas", ("diameter", "radius")),
+        Setting(COMP_CORNERS, "what joins moves outside a corner under G41", ("arc", "linear")),
+        Setting(COMP_ENTRY, "beside which end the move with G41 ends", ("own", "next")),
         Setting("tool-length-alone", "what G43 without Z does: Z, or zero", ("moves", "shifts")),
         Setting("tool-length-axis", "where lengths stay in G18 and G19", ("Z",)),
         Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),

@@ -14,6 +14,7 @@ from gcxform.contract.own_codes import may_be_said
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.straightened import written_out
+from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY
 from gcxform.machine.control import INERT as INERT_M
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.meaning import Act, Meaning
@@ -40,7 +41,8 @@ class Used:
 
     `own_codes` are M codes that the dialect does not have, `calls` are those that are kept as their
     programs are not at hand; `of_home` are the axes that go there. `length_alone`: a tool length is
-    called without a place along it. `changes` are codes that change a tool, which may move axes.
+    called without a place along it. `changes` are codes that change a tool, which may move axes;
+    `control` are settings of it that its codes depend on, but for those that hints ask.
     """
 
     first_offset: str = "G54"
@@ -54,6 +56,7 @@ class Used:
     of_home: dict[str, str] = field(default_factory=dict)
     calls: Places = field(default_factory=dict)
     length_alone: bool = False
+    control: Places = field(default_factory=dict)
 
     @property
     def codes(self) -> list[int]:
@@ -99,7 +102,7 @@ def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
         for number in distinct(window.shape).tolist():
             meaning = reader.table.meanings[number]
             named |= {*meaning.axes}
-            if meaning.acts or meaning.lost_by or "D" in meaning.slots:
+            if meaning.acts or meaning.lost_by or meaning.compensates or "D" in meaning.slots:
                 for line in np.flatnonzero(window.shape == number).tolist():
                     _look(used, dialect, _Block(source, window, meaning, line))
     used.axes = "".join(axis for axis in dialect.axes if axis in named and axis in PLACED)
@@ -190,6 +193,11 @@ def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0
     if meaning.compensates and not meaning.is_length("D") and number > 0:
         used.radii.setdefault(f"{number:g}", block.place)
+    rule = dialect.cutter_comp
+    if meaning.compensates and "G41" in dialect.codes:
+        for setting, known in ((COMP_CORNERS, rule.corners), (COMP_ENTRY, rule.entry)):
+            if not known:
+                used.control.setdefault(setting, block.place)
     changes = {number for number, code in dialect.m_codes.items() if code.group == "tool"}
     for number in meaning.lost_by - {-1}:
         codes = used.changes if number in changes else used.own_codes

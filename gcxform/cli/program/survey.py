@@ -87,6 +87,8 @@ class Survey:
         for question, places in whole:
             for one in used.named(question) if places else ():
                 self.used.setdefault(one, Tally()).add(program, places.get(one[1]))
+        for name, where in used.control.items():
+            self.used.setdefault(("control", name), Tally()).add(program, where)
         self._codes(program, used.own_codes)
 
     def _codes(self, program: str, codes: Places) -> None:

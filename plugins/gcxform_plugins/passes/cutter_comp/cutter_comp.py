@@ -33,7 +33,8 @@ class CutterComp(gx.CompensationPass):
     Inside corners end where the offset moves meet, outside corners are joined by an arc about the
     corner. What the tool cannot reach without cutting into the contour is refused. For LinuxCNC the
     path is the one that its interpreter executes. Other controls leave `corners` and `entry` to
-    parameters of the machine: say what they are set to.
+    parameters of the machine: say what they are set to, here or in the machine file
+    (`cutter-comp-corners`, `cutter-comp-entry`).
 
     Where the errors of a machine are taken off a program for LinuxCNC that is done by itself.
     """
@@ -50,21 +51,14 @@ class CutterComp(gx.CompensationPass):
     ] = None
 
     def begin(self, context: gx.PassContext) -> None:
-        """Refuse options that the control leaves no choice of, and their absence where it does."""
-        rule = context.source.cutter_comp
-        for name in ("corners", "entry"):
-            known, asked = getattr(rule, name), getattr(self, name)
+        """Refuse options that the control leaves no choice of."""
+        for name in CHOICES:
+            known, asked = getattr(context.source.cutter_comp, name), getattr(self, name)
             if known and asked is not None and asked != known:
                 raise gx.UsageError.one(
                     "GX740",
                     f'{context.source.name} has {name} = "{known}", and nothing else',
                     hint=f"leave {name} out",
-                )
-            if not known and asked is None and "G41" in context.source.codes:
-                raise gx.UsageError.one(
-                    "GX740",
-                    f"{name} of cutter compensation depends on a parameter of the machine",
-                    hint=f'say what it is set to: {name} = "{CHOICES[name]}"',
                 )
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
@@ -74,6 +68,7 @@ class CutterComp(gx.CompensationPass):
         if not path.side.any():
             return path.replace(blocks=blocks)
         _refuse(path, context)
+        self._refuse_open(path, context)
         centre = _CentrePath(path, self._manner(context))
         for first, last in _sections(path):
             centre.resolve(first, last)
@@ -109,10 +104,29 @@ class CutterComp(gx.CompensationPass):
             pass
         return None
 
+    def _said(self, name: str, context: gx.PassContext) -> str:
+        """Return how the control does it: by itself, as the option or the machine file says."""
+        machine = context.machine.control if context.machine is not None else {}
+        known = getattr(context.source.cutter_comp, name) or getattr(self, name)
+        return str(known or machine.get(f"{self.name}-{name}", ""))
+
+    def _refuse_open(self, path: gx.Toolpath, context: gx.PassContext) -> None:
+        """Refuse contours where a parameter decides how they are resolved, and nothing says it."""
+        first = np.flatnonzero(path.side)[:1]
+        found: list[gx.Diagnostic] = []
+        for name, values in CHOICES.items() if "G41" in context.source.codes else ():
+            if not self._said(name, context):
+                message = f"{name} of cutter compensation depends on a parameter of the machine"
+                ways = [f'{self.name}-{name} = "{value}" in [control]' for value in values]
+                hint = f'say what it is set to: {", or ".join(ways)}; or {name} = "{values[0]}"'
+                found += path.refuse("GX740", first, message, hint).diagnostics
+        if found:
+            raise gx.InputError(tuple(found))
+
     def _manner(self, context: gx.PassContext) -> Manner:
         rule = context.source.cutter_comp
-        corners = Corners(rule.corners) if rule.corners else self.corners or Corners.ARC
-        entry = Entry(rule.entry) if rule.entry else self.entry or Entry.OWN
+        corners = Corners(self._said("corners", context) or Corners.ARC)
+        entry = Entry(self._said("entry", context) or Entry.OWN)
         return Manner(corners, entry, rule.straight or STRAIGHT, bool(rule.corners and rule.entry))
 
 
@@ -129,7 +143,7 @@ WRITTEN = (
 )
 AGAIN = "lead the tool off the contour and cancel it with G40 before, and begin it again behind"
 END = "lead the tool off the contour, and end it with G40"
-CHOICES = {"corners": 'arc" or "linear', "entry": 'own" or "next'}
+CHOICES = {"corners": ("arc", "linear"), "entry": ("own", "next")}
 
 
 def _sections(path: gx.Toolpath) -> Iterator[tuple[int, int]]:
