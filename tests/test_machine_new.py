@@ -312,7 +312,6 @@ def test_the_tool_in_the_spindle_has_the_length_of_a_code_without_a_number(here:
         asked = asked_of(here, "linuxcnc", program, chain)
         assert "[tool.5]" in asked
         assert "no setting" not in asked
-    assert "[tool.7]" not in asked_of(here, "linuxcnc", program)
     assert "[tool." not in asked_of(here, "fanuc", program)
 
 
@@ -344,3 +343,26 @@ def test_how_a_contour_is_resolved_is_asked_with_the_radius(here: Path, chain: s
     other = call(*words, "-m", "m.toml", "-x", "cutter-comp corners=arc entry=own")
     assert done.exit_code == same.exit_code == 0, done.stderr
     assert done.stdout == same.stdout != other.stdout
+
+
+def test_what_is_used_asks_for_more_once_it_is_known(here: Path) -> None:
+    """With a zero that is known it counts how far it is from the first, which nobody names."""
+    moves = "G90 G55 G40 G0 X2. Y0 Z50.\nG43 H3 Z39.\nG1 X9. F39\nG28 Z39.\nG0 Y-49.\nG91 G1 Z-1.\n"
+    (here / "part.nc").write_text("%\nO1\nG21 G94 G17\n" + moves + "M30\n%\n")
+    new = ("machine", "new", "-f", "fanuc", "part.nc", "-o", "m.toml")
+    call(*new)
+    fill_in(here / "m.toml")
+    before = (here / "m.toml").read_text()
+    call(*new)
+    assert (here / "m.toml").read_text() == before
+    done = call("run", "-q", "-f", "fanuc", "-m", "m.toml", "-x", "absolute", "part.nc")
+    assert done.exit_code == 0, done.stderr
+
+
+def test_a_macro_that_is_not_at_hand_has_the_number_of_its_call(here: Path) -> None:
+    """A code that a machine file declares has none, and G65 without P is refused as such."""
+    (here / "m.toml").write_text('format = 1\n[control.macro.G38]\nends = "unknown"\n')
+    (here / "part.nc").write_text(HEAD + "G0 X1. Y2. Z3.\nG65\nG38\nM30\n%\n")
+    done = call("machine", "new", "-f", "fanuc", "part.nc", "-o", "m.toml")
+    assert done.exit_code == 0, done.stderr
+    assert "a call takes a number in P" in done.stderr

@@ -68,6 +68,18 @@ class Used:
         if letters:
             self.axes = "".join(axis for axis in self.axes if axis in letters)
 
+    def questions(self) -> Iterator[tuple[Question, Location | None]]:
+        """Yield what is to be said of all that the program names, with the place of each."""
+        whole: tuple[tuple[Question, Places], ...] = (
+            (("work-offset", ANY, "X"), self.offsets),
+            (("tool", ANY, "length"), self.lengths),
+            (("tool", ANY, "radius"), self.radii),
+            (("home", ANY, "X"), self.homes),
+        )
+        for question, places in whole:
+            yield from ((q, places.get(q[1])) for q in self.named(question) if places)
+        yield from ((("control", name), where) for name, where in self.control.items())
+
     def named(self, question: Question) -> Iterator[Question]:
         """Yield the questions that one of all tools, or of a place, stands for in this program."""
         table, name, *key = question
@@ -184,9 +196,10 @@ def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     """Note what a block uses."""
     meaning = block.meaning
     if meaning.call:
-        called = f"P{block.value(dict(meaning.call_slots).get('P', 0)):g}"
-        called = called if meaning.call == NUMBERED else meaning.call
-        if may_be_said(dialect, called):
+        called, slots = meaning.call, dict(meaning.call_slots)
+        if called == NUMBERED and "P" in slots:
+            called = f"P{block.value(slots['P']):g}"
+        if called != NUMBERED and may_be_said(dialect, called):
             used.calls.setdefault(called, block.place)
     for act in meaning.acts:
         _act(used, dialect, act, block)

@@ -18,7 +18,7 @@ import msgspec
 from gcxform.catalogue.questions import OF_THE_STATE, PIPELINE, Question, kind_of, questions
 from gcxform.cli.program.machine_needs import ANY, INERT, LENGTH_ALONE, Used, used_by
 from gcxform.diagnostics import Diagnostic, Severity
-from gcxform.machine.control import inert_of, settings_of
+from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY, inert_of, settings_of
 from gcxform.machine.machine import Machine, Tool
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
@@ -31,6 +31,8 @@ ON_TRIAL: Final[Mapping[Question, Any]] = {
     ("tool", "radius"): 0.001,
     ("input", "parameters"): 1.0,
     ("control", "macro"): "unchanged",
+    ("control", COMP_CORNERS): "arc",
+    ("control", COMP_ENTRY): "own",
     LENGTH_ALONE: "shifts",
 }
 """Values on trial where 0 would not be one: mm, less than contours are wide; 0 has no unit."""
@@ -117,6 +119,20 @@ class Visit:
                 break
             errors = self._again(self.so_far.given)
         return self.so_far
+
+    def suppose(self, answered: Iterable[Question]) -> Missing:
+        """Return what is asked beside, if some questions are answered that nothing has asked."""
+        trials = dict(self._trial(q) for q in answered if q not in self.so_far.given)
+        if not trials:
+            return self.so_far
+        self.so_far.given |= trials
+        self.so_far.left_out.clear()  # what stands in such lines may be asked for now
+        return self.run(self._again(self.so_far.given))
+
+    def _trial(self, question: Question) -> tuple[Question, Any]:
+        """Return a question with its value on trial."""
+        codes = {INERT: self.used.codes}
+        return question, codes.get(question, ON_TRIAL.get(kind_of(question), 0.0))
 
     def _again(self, given: Given) -> list[Diagnostic]:
         program = _without(self.source, self.so_far.left_out)
@@ -212,8 +228,7 @@ class Visit:
     def _trials(self, whole: Question) -> Given:
         """Return values on trial for all that a question stands for, and nothing is given for."""
         new = (q for q in self.used.named(whole) if q not in self.so_far.given)
-        codes = {INERT: self.used.codes}
-        return {q: codes.get(q, ON_TRIAL.get(kind_of(q), 0.0)) for q in new}
+        return dict(map(self._trial, new))
 
     def _ended(self, lost: list[Diagnostic], more: Mapping[Question, Given]) -> list[Diagnostic]:
         """Return the findings that are gone if more is said."""

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from gcxform.catalogue.questions import PIPELINE, Question
-from gcxform.cli.program.machine_needs import ANY, INERT, Places, Used
-from gcxform.cli.program.missing import Look, Visit
+from gcxform.cli.program.machine_needs import INERT, Places, Used
+from gcxform.cli.program.missing import Look, Missing, Visit
 from gcxform.diagnostics import Location, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.by_itself import is_subprogram
@@ -65,31 +65,25 @@ class Survey:
         visits = [Visit(pipeline, source, look) for pipeline in pipelines]
         found = [visit.run(look(visit.pipeline, source)) for visit in visits]
         self.programs += 1
-        self._uses(source.name, visits[0].used)
-        for cause in (cause for each in found for cause in each.causes.values()):
-            if INERT in cause.asks:
-                self._codes(source.name, visits[0].used.changes)
-            for question in cause.asks:
-                tally = self.needed.setdefault(question, Tally())
-                tally.add(source.name, cause.found[0].where)
         for cause in found[0].causes.values():
             if not cause.asks:
                 key = cause.found[0].code, cause.found[0].message
                 self.refused.setdefault(key, Tally()).add(source.name, cause.found[0].where)
+        used = visits[0].used
+        named = dict(used.questions())
+        for question, where in named.items():
+            self.used.setdefault(question, Tally()).add(source.name, where)
+        self._codes(source.name, used.own_codes)
+        for each in [visit.suppose([*named, INERT]) for visit in visits]:
+            self._needs(source.name, each, used)
 
-    def _uses(self, program: str, used: Used) -> None:
-        whole: tuple[tuple[Question, dict[str, Location]], ...] = (
-            (("work-offset", ANY, "X"), used.offsets),
-            (("tool", ANY, "length"), used.lengths),
-            (("tool", ANY, "radius"), used.radii),
-            (("home", ANY, "X"), used.homes),
-        )
-        for question, places in whole:
-            for one in used.named(question) if places else ():
-                self.used.setdefault(one, Tally()).add(program, places.get(one[1]))
-        for name, where in used.control.items():
-            self.used.setdefault(("control", name), Tally()).add(program, where)
-        self._codes(program, used.own_codes)
+    def _needs(self, program: str, found: Missing, used: Used) -> None:
+        """Note what a program is refused without, what is used being answered or not."""
+        for cause in found.causes.values():
+            if INERT in cause.asks:
+                self._codes(program, used.changes)
+            for question in cause.asks:
+                self.needed.setdefault(question, Tally()).add(program, cause.found[0].where)
 
     def _codes(self, program: str, codes: Places) -> None:
         for code, where in codes.items():
