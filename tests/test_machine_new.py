@@ -249,9 +249,10 @@ HEAD = "%\nO1\nG21 G90 G94 G17 G54\n"
 
 
 def test_an_extruder_has_no_place_in_a_machine(here: Path) -> None:
-    asked = asked_of(here, "marlin", "G21\nG90\nM82\nG28\nG1 X9 Y9 E1 F99\nG28 X\n")
+    asked = asked_of(here, "marlin", "G21\nG90\nM82\nG28\nG29\nG1 X9 Y9 E1 F99\nG28 X\n")
     assert "[home.G28]\n" in asked
     assert "E =" not in asked
+    assert "G29" not in asked
     (here / "m.toml").write_text(asked[: asked.index("1 program in")].replace('"?"', "0.0"))
     done = call("check", "-f", "marlin", "-x", "absolute", "-m", "m.toml", "part.nc")
     assert done.exit_code == 0, done.stderr

@@ -16,6 +16,7 @@ from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.straightened import written_out
 from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY
 from gcxform.machine.control import INERT as INERT_M
+from gcxform.machine.file import HOME, WORK_OFFSET
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.meaning import Act, Meaning
 from gcxform.modal.reader import windows_of
@@ -223,7 +224,9 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
     if act.name == "work":
         name = dialect.offset_rule.names.get(act.code, act.code)
         named = [f" {letter}{value:.0f}" for letter, value in words.items()]
-        used.offsets.setdefault(name + "".join(named), block.place)
+        name += "".join(named)
+        if WORK_OFFSET.fullmatch(name):
+            used.offsets.setdefault(name, block.place)
     elif act.name in LENGTHS and words.get("H", 0.0) > 0:
         used.lengths.setdefault(f"{words['H']:g}", block.place)
         used.length_alone |= dialect.tool_rule.length_may_move and "Z" not in block.meaning.axes
@@ -231,5 +234,7 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
         used.lengths.setdefault(f"{words['T']:g}", block.place)
     elif act.name == "home":
         name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
+        if not HOME.fullmatch(name):
+            return  # of no control's page: a machine file does not know it
         used.of_home[name] = used.of_home.get(name, "") + (block.meaning.axes or PLACED)
         used.homes.setdefault(name, block.place)

@@ -103,9 +103,11 @@ class Missing:
 class Visit:
     """One visit to a program: what is missing, and what is looked at next."""
 
-    def __init__(self, pipeline: Pipeline, source: Source, look: Look) -> None:
+    def __init__(
+        self, pipeline: Pipeline, source: Source, look: Look, used: Used | None = None
+    ) -> None:
         self.pipeline, self.source, self.look = pipeline, source, look
-        self.used: Used = used_by(source, pipeline.source, pipeline.machine_reading)
+        self.used = used or used_by(source, pipeline.source, pipeline.machine_reading)
         if pipeline.machine is not None:
             self.used.keep_axes(pipeline.machine.axes)
         self.so_far = Missing()

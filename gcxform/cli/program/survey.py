@@ -62,14 +62,15 @@ class Survey:
         if is_subprogram(source, pipelines[0].source):
             self.subprograms += 1
             return
-        visits = [Visit(pipeline, source, look) for pipeline in pipelines]
+        first = Visit(pipelines[0], source, look)
+        used = first.used  # of all: they read alike
+        visits = [first, *(Visit(pipeline, source, look, used) for pipeline in pipelines[1:])]
         found = [visit.run(look(visit.pipeline, source)) for visit in visits]
         self.programs += 1
         for cause in found[0].causes.values():
             if not cause.asks:
                 key = cause.found[0].code, cause.found[0].message
                 self.refused.setdefault(key, Tally()).add(source.name, cause.found[0].where)
-        used = visits[0].used
         named = dict(used.questions())
         for question, where in named.items():
             self.used.setdefault(question, Tally()).add(source.name, where)
