@@ -58,7 +58,8 @@ class PointRule:
 
     def waits_as(self, other: PointRule) -> bool:
         """Whether a dwell is as long under another rule, however it is written."""
-        return self.dwell == other.dwell and self.dwell_in_seconds == other.dwell_in_seconds
+        units = self.dwell == other.dwell and self.dwell_in_seconds == other.dwell_in_seconds
+        return units and self.required == other.required
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,9 @@ import numpy as np
 
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
+from gcxform.dialect.code_translation import HOME
 from gcxform.emit.centres import Centres
+from gcxform.emit.codewords import WAY_HOME
 from gcxform.emit.copying import Copying
 from gcxform.emit.expressible import left_out, nothing_left, says_more
 from gcxform.emit.fields import Role
@@ -135,6 +137,7 @@ class _Job:
         self._refuse_lost()
         self._refuse_behind_end()
         self._refuse_dwells()
+        self._refuse_ways_home()
         refuse_other_zeros(self.task)
         centre = Centres(self.task, self.stated.kind, self.positions, self.copying).write()
         empty = self._without_words() | self._foreign() | self._gone() | self._only_compensates()
@@ -229,11 +232,36 @@ class _Job:
                 "GX501", message, where, "take out M2 or M30, or what is behind it"
             )
 
+    def _refuse_ways_home(self) -> None:
+        """Refuse ways home that the target would have to say by G53, and of which none knows how.
+
+        There they end a tool length, or are not known to move what they move here.
+        """
+        task, saying = self.task, self.task.manner.saying
+        codes, first = task.manner.source.codes, task.path.blocks.first
+        if not saying.crosses:
+            return
+        for event in task.read.path.events:
+            code = codes.get(event.what)
+            if code is None or code.act != HOME or event.line - first in task.read.homed:
+                continue
+            rows = np.flatnonzero(task.read.path.block == event.line - first)
+            called = len(rows) > 0 and task.read.path.frames[task.read.path.frame[rows[0]]].called
+            if saying.instead(event.what) == event.what and saying.moves_home(
+                event.what, len(rows) == 1, called
+            ):
+                target = task.manner.target.name
+                message = f"{target} cannot say {event.what}: it does more there"
+                raise InputError.one("GX501", message, task.location(event.line - first), WAY_HOME)
+
     def _refuse_dwells(self) -> None:
         """Refuse cycles that stand as they are, and would wait for another time in the target."""
         task = self.task
         source, target = task.manner.source, task.manner.target
-        if not task.manner.crossing or source.point_rule.waits_as(target.point_rule):
+        if not task.manner.crossing:
+            return
+        self._refuse_open_waits()
+        if source.point_rule.waits_as(target.point_rule):
             return
         waits = task.table.slots[task.shape, ord("P") - 65]
         cycles = self.path.block[self.path.form == Form.CYCLE]
@@ -248,6 +276,15 @@ class _Job:
                 )
                 hint = put_before("cycles")
                 raise InputError.one("GX501", message, task.location(line), hint)
+
+    def _refuse_open_waits(self) -> None:
+        """Refuse dwells of which a setting of the source says how long they are."""
+        first = self.task.path.blocks.first
+        for event in self.task.read.path.events:
+            if "increments" in dict(event.values):
+                message = "how long it waits depends on the control: its time has no decimal point"
+                hint = 'increment = "IS-B" in [input] if 1000 is 1 s; or write it with a point'
+                raise InputError.one("GX205", message, self.task.location(event.line - first), hint)
 
     def _refuse_rounding(self) -> None:
         """Refuse moves of cycles where corners are rounded: the bottom would not be reached."""

@@ -11,6 +11,7 @@ from bisect import bisect_left
 from math import isnan
 
 from gcxform.dialect.arithmetic import Key
+from gcxform.dialect.null import Null
 from gcxform.emit.spelled import Text
 from gcxform.flow.text import assignment
 from gcxform.flow.walk import Walk
@@ -40,7 +41,8 @@ class Values:
                 if isnan(values[key]):
                     return None
                 said = assignment(key, values[key], self.walk.arithmetic)
-                if float(said.partition("=")[2]) != values[key]:
+                null = isinstance(values[key], Null)
+                if not null and float(said.partition("=")[2]) != values[key]:
                     return None
                 end = self.walk.listing.line_end(line)
                 text += Text(said.encode("latin-1") + end, (line,))

@@ -256,9 +256,17 @@ class RunState:
         ]
 
     def _as_it_stands(self, word: Word) -> str:
-        """Return the text of a value that the control rounds as nobody has said; see `needs`."""
+        """Return the text of a value that the control rounds as nobody has said; see `needs`.
+
+        Parameters of a call become what they are worth: outside of it their names mean others. It
+        stays an expression, as a number would not be rounded.
+        """
         assert isinstance(word.value, Expression)
         keys = set(parameters_in(word.value.tree))
+        if self.level() and not all(map(self.arithmetic.outlives, keys)):
+            evaluator = Evaluator(self.arithmetic, self.parameters, in_word=True)
+            text = self.remains(word.value, evaluator)
+            return text if text[0] == "[" else f"[{text}]"
         self.needs(keys | (self.dropped if has_computed(word.value.tree) else set()))
         return self.listing.block(self.line).text[word.value.start : word.value.end]
 

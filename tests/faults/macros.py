@@ -529,4 +529,18 @@ MUTATIONS = (
         'message = "when this is sent out, beside other words, is not certain"\n        _ =',
         "flow/dprnt-beside-words",
     ),
+    _macro(
+        "a word that is rounded nobody knows how reads the parameters of the program in a call",
+        "gcxform/flow/run_state.py",
+        "if self.level() and not all(map(self.arithmetic.outlives, keys)):",
+        "if False:",
+        "flow/fanuc-rounded-in-a-call",
+    ),
+    _macro(
+        "what is null has to be a number to be left behind",
+        "gcxform/emit/values_left.py",
+        "if not null and float(",
+        "if float(",
+        "flow/fanuc-null-left",
+    ),
 )

@@ -383,4 +383,25 @@ MUTATIONS = (
         "False",
         f"{LEFT}test_a_way_home_of_all_axes_names_them_where_it_has_to",
     ),
+    Mutation(
+        "saying: a way home that ends a length there is copied where nobody knows home",
+        "gcxform/emit/emitter.py",
+        "if saying.instead(event.what) == event.what and saying.moves_home(",
+        "if False and saying.moves_home(",
+        f"{ACROSS}/home-ends-length]",
+    ),
+    Mutation(
+        "saying: a dwell of a length that is not known is written",
+        "gcxform/emit/emitter.py",
+        'if "increments" in dict(event.values):',
+        "if False:",
+        f"{ACROSS}/dwell-open]",
+    ),
+    Mutation(
+        "saying: a dwell without a point is as long on a control that has no increments",
+        "gcxform/dialect/increments.py",
+        "return units and self.required == other.required",
+        "return units",
+        f"{ACROSS}/dwell-of-increments]",
+    ),
 )
