@@ -14,7 +14,7 @@ from gcxform.catalogue.remedies import put_before
 from gcxform.dialect.code_translation import HOME, MACHINE
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
-from gcxform.emit.expressible import STATED, TAPPING, like, other_in, same_m
+from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
 from gcxform.emit.own_blocks import apart, m_codes_of
@@ -22,7 +22,7 @@ from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.meaning.tables import CYCLES
 from gcxform.syntax.shapes import Shape
-from gcxform.syntax.tree import Number, Word
+from gcxform.syntax.tree import CODES, Number, Word
 
 WAY_HOME: Final = (
     "G91 G28 Z0 and the like can be said by G53: give the machine file where home and the zero of "
@@ -186,8 +186,18 @@ class CodeWords:
                 self.stated.add(group)
         if not texts:
             return lead
+        self._refuse_call(word, texts)
         self.draft.literal(lead, self.draft.gap.decode().join(texts))
         return self.draft.gap
+
+    def _refuse_call(self, word: Word, texts: list[str]) -> None:
+        """Refuse words in front of a call: in what order they and the call act is not certain."""
+        name = code_of(word) if word.address in CODES else ""
+        code = self.source.codes.get(name)
+        if code is not None and code.effect is Effect.CALL:
+            stated = " ".join(texts)
+            what = f"{name}, for which {stated} would have to be stated in front of it"
+            self.draft.refuse(word, what, "leave such programs without the pass")
 
     def repair(self) -> None:
         """State what is still to be stated, in a block that had no word to put it before."""

@@ -51,12 +51,13 @@ class Values:
         return found[0] if len(same) == 1 else None
 
     def _left(self, begin: int, end: int) -> dict[Key, float]:
-        """Return the values that steps of one call leave in parameters of its own."""
+        """Return the values that steps of one call leave in parameters of its own, unsaid."""
         steps, level = self.walk.steps, self.walk.steps[begin].level
+        outlives, said = self.walk.arithmetic.outlives, self.walk.said
         return {
             made.key: made.value
             for made in self.walk.made_by(begin, end)
-            if steps[made.step].level == level and not self.walk.arithmetic.outlives(made.key)
+            if steps[made.step].level == level and not outlives(made.key) and made.key not in said
         }
 
     def _reads(self, key: Key, lines: range, runs: list[Run]) -> bool:

@@ -214,6 +214,7 @@ class Execution(RunState):
             self.tied,
             self.times,
             self.arithmetic,
+            self.settled.needed if self.keeps else frozenset(),
         )
 
     def _called_files(self) -> Iterator[Definition]:

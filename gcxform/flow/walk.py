@@ -98,6 +98,7 @@ class Walk:
     made         the assignments, in order
     tied         why the order of execution rests on the path itself; nothing if it does not
     times        how often each line was executed, (lines,)
+    said         parameters of a call whose assignments stand in the blocks that were executed
     """
 
     listing: Listing
@@ -115,6 +116,7 @@ class Walk:
     tied: str
     times: Ints
     arithmetic: Arithmetic
+    said: frozenset[Key] = frozenset()
 
     @cached_property
     def steps(self) -> tuple[Step, ...]:

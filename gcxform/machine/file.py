@@ -33,6 +33,7 @@ from gcxform.diagnostics import Diagnostic, Location, UsageError
 from gcxform.errormodel.model_file import CODES, check_version
 from gcxform.machine import control
 from gcxform.machine import kinds as presets
+from gcxform.machine.control import HOME, WORK_OFFSET
 from gcxform.machine.formats import NONE, Known, ProgramSettings, reader_findings
 from gcxform.machine.machine import (
     Axis,
@@ -49,9 +50,7 @@ FILLED_IN = ("control", "tool", "work-offset", "home")
 """The tables in which a value may be left to be filled in."""
 EXAMPLES = {"axis": "X", "work-offset": "G54", "home": "G28", "tool": "1"}
 Keys = tuple[str | int, ...]
-HOME = re.compile(r"G28|G30( P[0-9]+)?")
 TOOL = re.compile("[0-9]{1,9}")
-WORK_OFFSET = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+|G15 H[0-9]+")
 
 
 def load_machine(path: Path, known: Known = NONE) -> Machine:

@@ -12,7 +12,8 @@ from gcxform.config.schemas import format_schema, headed, of_toml, opened, whole
 from gcxform.config.to_fill_in import TO_FILL_IN
 from gcxform.errormodel.model_file import FORMAT
 from gcxform.machine import control
-from gcxform.machine.file import FILLED_IN, HOME, TOOL, WORK_OFFSET
+from gcxform.machine.control import HOME, WORK_OFFSET
+from gcxform.machine.file import FILLED_IN, TOOL
 from gcxform.machine.formats import NONE, Known
 from gcxform.machine.machine import MachineFile
 

@@ -273,6 +273,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/haas/r-above-the-level]",
     ),
     Mutation(
+        "cycles: the last digit of a work offset is a higher R",
+        "gcxform/modal/cycles/checks.py",
+        "stretch.clearance - stretch.initial > SAME",
+        "stretch.clearance > stretch.initial",
+        "tests/test_corpus.py::test_case[tied/tapping-from-its-level]",
+    ),
+    Mutation(
         "cycles: R above the level ends at R under G98",
         "gcxform/modal/cycles/checks.py",
         "high &= calls.initial | open_way",

@@ -543,4 +543,11 @@ MUTATIONS = (
         "if float(",
         "flow/fanuc-null-left",
     ),
+    _macro(
+        "what stands in a loop that is written out is left behind it as well",
+        "gcxform/emit/values_left.py",
+        " and made.key not in said",
+        "",
+        "flow/fanuc-left-and-said",
+    ),
 )

@@ -404,4 +404,11 @@ MUTATIONS = (
         "return units",
         f"{ACROSS}/dwell-of-increments]",
     ),
+    Mutation(
+        "saying: a mode is stated in front of a call",
+        "gcxform/emit/codewords.py",
+        "code.effect is Effect.CALL:",
+        "False:",
+        "tests/test_corpus.py::test_case[feed/measured-in-another-mode]",
+    ),
 )

@@ -14,9 +14,8 @@ from gcxform.contract.own_codes import may_be_said
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.straightened import written_out
-from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY
+from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY, HOME, WORK_OFFSET
 from gcxform.machine.control import INERT as INERT_M
-from gcxform.machine.file import HOME, WORK_OFFSET
 from gcxform.modal.meaning.calls import NUMBERED
 from gcxform.modal.meaning.meaning import Act, Meaning
 from gcxform.modal.reader import windows_of

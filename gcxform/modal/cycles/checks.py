@@ -18,6 +18,7 @@ UNKNOWN = 2
 """How the spindle turns where nobody knows; otherwise +1 (M3), -1 (M4), 0."""
 MOST = 100_000  # moves that one block may become
 ENOUGH = 50  # refusals of one kind
+SAME = 1e-9  # mm; levels nearer than that are one, less the last digits of a work offset
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +154,7 @@ class Checks:
         deep = drilled & (stretch.bottom > stretch.clearance)
         yield deep, f"{{code}} with {normal} above R", ""
         if not self.rule.rises_first:
-            high = drilled & (stretch.clearance > stretch.initial)
+            high = drilled & (stretch.clearance - stretch.initial > SAME)
             open_way = self._from_below_r() & (not self.open_pecks)
             high &= calls.initial | open_way  # G99 ends at R on every control
             message = "{code} with R above the level from which the cycle began"
