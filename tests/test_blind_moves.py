@@ -50,3 +50,9 @@ def test_an_arc_of_another_sweep_is_another() -> None:
     owner = np.arange(len(path))
     assert deviation(path, path, owner).distance.max() == 0.0
     assert deviation(path, longer, owner).distance.max() == np.inf
+
+
+def test_the_other_way_round_the_same_chord_is_another() -> None:
+    path = gx.read((BEGIN + "G2 X10. R6.\nM30\n").encode(), "fanuc").path
+    around = path.replace(sweep=np.where(path.is_arc, 2 * np.pi - path.sweep, path.sweep))
+    assert deviation(path, around, np.arange(len(path))).distance.max() == np.inf

@@ -137,7 +137,7 @@ class Renderer:
 
 def _lengths(matrix: Bytes) -> Ints:
     """Return how many bytes of each row are no padding; eight of them are counted at once."""
-    eights = (matrix != 0).view(np.uint64)
+    eights = np.ascontiguousarray(matrix != 0).view(np.uint64)  # rows of one text lie by columns
     counts = np.zeros(len(matrix), np.int64)
     for column in range(eights.shape[1]):
         counts += np.bitwise_count(eights[:, column])

@@ -117,4 +117,18 @@ MUTATIONS = (
         "plain = path.form == Form.PLAIN",
         CORPUS,
     ),
+    Mutation(
+        "proof: the sweep of a half circle from nowhere is the same to the last digit",
+        "gcxform/deviations/deviation.py",
+        "same &= half | (",
+        "same &= (",
+        "tests/test_corpus.py::test_case[flow/half-circle-from-nowhere]",
+    ),
+    Mutation(
+        "proof: sweeps of the same chord are the same",
+        "gcxform/deviations/deviation.py",
+        " & (np.abs(sweep - other) <= HALF_SLIP)",
+        "",
+        "tests/test_blind_moves.py",
+    ),
 )

@@ -254,4 +254,11 @@ MUTATIONS = (
         "stated = kind == 2",
         CORPUS + "[dialects/fanuc/more-offset-set-behind]",
     ),
+    Mutation(
+        "emit: rows that are one text lie in memory as others do",
+        "gcxform/emit/render.py",
+        "np.ascontiguousarray(matrix != 0)",
+        "(matrix != 0)",
+        "tests/test_corpus.py::test_case[flow/one-text-for-all-lines]",
+    ),
 )
