@@ -21,8 +21,6 @@ from gcxform.values import dataclass
 
 ROUND = 1e-9  # mm; by so much the radius of a circle may change
 SAME_SWEEP = 1e-9  # rad
-HALF_SLIP = 1e-5  # rad; so much the last digit of a chord turns a half circle
-SAME_CHORD = 1e-12  # of the diameter
 SWEEP_SLIP = 0.05  # rad; rows whose sweeps differ by more do not follow their owner
 
 
@@ -127,10 +125,7 @@ class _Comparison:
         self._ends(rows)
         owner = self.owner[rows]
         same = self.after.form[rows] == Form.BLIND
-        sweep, other = self.after.sweep[rows], self.before.sweep[owner]
-        chords = np.abs(np.sin(sweep / 2) - np.sin(other / 2))
-        half = (chords <= SAME_CHORD) & (np.abs(sweep - other) <= HALF_SLIP)
-        same &= half | (np.abs(sweep - other) <= SAME_SWEEP)
+        same &= np.abs(self.after.sweep[rows] - self.before.sweep[owner]) <= SAME_SWEEP
         for name in ("kind", "plane"):
             same &= getattr(self.after, name)[rows] == getattr(self.before, name)[owner]
         self.distance[rows[~same]] = np.inf

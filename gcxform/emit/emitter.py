@@ -245,14 +245,15 @@ class _Job:
             code = codes.get(event.what)
             if code is None or code.act != HOME or event.line - first in task.read.homed:
                 continue
-            rows = np.flatnonzero(task.read.path.block == event.line - first)
-            called = len(rows) > 0 and task.read.path.frames[task.read.path.frame[rows[0]]].called
+            path, line = task.read.path, event.line - first
+            row, end = np.searchsorted(path.block, [line, line + 1]).tolist()
+            called = end > row and path.frames[path.frame[row]].called
             if saying.instead(event.what) == event.what and saying.moves_home(
-                event.what, len(rows) == 1, called
+                event.what, end - row == 1, called
             ):
                 target = task.manner.target.name
                 message = f"{target} cannot say {event.what}: it does more there"
-                raise InputError.one("GX501", message, task.location(event.line - first), WAY_HOME)
+                raise InputError.one("GX501", message, task.location(line), WAY_HOME)
 
     def _refuse_dwells(self) -> None:
         """Refuse cycles that stand as they are, and would wait for another time in the target."""
@@ -281,7 +282,7 @@ class _Job:
         """Refuse dwells of which a setting of the source says how long they are."""
         first = self.task.path.blocks.first
         for event in self.task.read.path.events:
-            if "increments" in dict(event.values):
+            if event.what == "DWELL" and "increments" in dict(event.values):
                 message = "how long it waits depends on the control: its time has no decimal point"
                 hint = 'increment = "IS-B" in [input] if 1000 is 1 s; or write it with a point'
                 raise InputError.one("GX205", message, self.task.location(event.line - first), hint)

@@ -118,17 +118,10 @@ MUTATIONS = (
         CORPUS,
     ),
     Mutation(
-        "proof: the sweep of a half circle from nowhere is the same to the last digit",
-        "gcxform/deviations/deviation.py",
-        "same &= half | (",
-        "same &= (",
+        "proof: an arc from nowhere is worked out by where its known axes stand",
+        "gcxform/modal/moves/arcs.py",
+        "np.where(blind, words.way, end)",
+        "np.where(nowhere, words.way, end - began)",
         "tests/test_corpus.py::test_case[flow/half-circle-from-nowhere]",
-    ),
-    Mutation(
-        "proof: sweeps of the same chord are the same",
-        "gcxform/deviations/deviation.py",
-        " & (np.abs(sweep - other) <= HALF_SLIP)",
-        "",
-        "tests/test_blind_moves.py",
     ),
 )

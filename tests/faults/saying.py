@@ -393,8 +393,8 @@ MUTATIONS = (
     Mutation(
         "saying: a dwell of a length that is not known is written",
         "gcxform/emit/emitter.py",
-        'if "increments" in dict(event.values):',
-        "if False:",
+        'event.what == "DWELL" and "increments" in dict(event.values)',
+        "False",
         f"{ACROSS}/dwell-open]",
     ),
     Mutation(

@@ -57,9 +57,11 @@ def resolve_arcs(path: Toolpath, words: ArcWords, lines: Lines) -> Toolpath:
     frames = path.frames, path.frame[rows]
     start, end = (by_frame(Frame.local, *frames, place[:, :3], -1.0) for place in ends)
     nowhere = np.isnan(start) & (path.form[rows] == Form.BLIND)[:, None] & ~words.absolute[:, None]
-    if nowhere.any():  # such an arc is worked out as if it began at 0
-        lost &= ~nowhere.any(axis=1)
-        start, end = np.where(nowhere, 0.0, start), np.where(nowhere, words.way, end)
+    blind = nowhere.any(axis=1)[:, None]
+    began = np.where(blind, start, 0.0)
+    if blind.any():  # such an arc is worked out by its words alone, as if it began at 0
+        lost &= ~blind[:, 0]
+        start, end = np.where(blind, 0.0, start), np.where(blind, words.way, end)
     for plane in Plane:
         here = path.plane[rows] == plane
         if here.any():
@@ -68,7 +70,7 @@ def resolve_arcs(path: Toolpath, words: ArcWords, lines: Lines) -> Toolpath:
             part = _Part(plane, chosen, start[here], end[here], unknown, dialect, findings)
             middle, angle = part.resolve(path.sense[rows[here]])
             centre[rows[here]], sweep[rows[here]] = middle, angle
-    centre[rows] = np.where(nowhere, np.nan, centre[rows])
+    centre[rows] += began
     return _as_positions(path.replace(centre=centre, sweep=sweep), lines)
 
 
