@@ -149,6 +149,7 @@ class FlowRule:
     argument_list   "II" if I, J, K may come again; "" where a parameter decides
     kept_codes      codes of the machine file whose blocks are kept as calls
     m99_returns     a file that ends with M99 is a subprogram by itself, where no language is read
+    words_first     what stands beside M98 or M99 is executed before it calls or returns
     null_compare    whether null is equal to 0: "distinct", "zero", or "" where that is not known
     """
 
@@ -163,3 +164,4 @@ class FlowRule:
     null_compare: str = ""
     kept_codes: frozenset[str] = frozenset()
     m99_returns: bool = False
+    words_first: bool = False

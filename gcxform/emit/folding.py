@@ -188,7 +188,7 @@ class _Folding:
                 continue
             if len(texts) > 1:
                 self._write_out(self._around(unit), self._differs(line, texts))
-            elif line in self.walk.deciding:
+            elif line in self.walk.deciding and not self.spelled.moves_and_calls(line):
                 why = f"line {line + 1} decides what is executed, and was changed"
                 self._write_out(self._around(unit), why)
             else:
@@ -209,7 +209,7 @@ class _Folding:
 
     def _settle_line(self, unit: Unit, step: int) -> None:
         """Write a line as what it became; with what it sets, which the program reads."""
-        text = self.spelled.text(*self.spelled.blocks(step, unit.first))
+        text = self.spelled.became(step, unit.first)
         if not self.spelled.sets(unit.first):
             self.texts[unit.first] = text
             return
@@ -294,6 +294,8 @@ class _Folding:
         sub = self._called(step)
         if sub is None or sub in self.out or line in self.walk.reads:
             return False
+        if self.spelled.moves_and_calls(line):
+            return False
         items = self.walk.listing.block(line).items
         if any(isinstance(item, Statement) for item in items):
             return True
@@ -344,7 +346,8 @@ class _Folding:
             for text in written
             for line in text.lines
         )
-        return calls or any(line not in self.texts and not self._is_out(line) for line in own)
+        stay = (n for n in own if n not in self.texts or self.spelled.moves_and_calls(n))
+        return calls or not all(map(self._is_out, stay))
 
     def _gone(self) -> list[Unit]:
         """Return the units that do not stand where they did, but for those inside others."""

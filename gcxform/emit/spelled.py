@@ -15,6 +15,7 @@ from itertools import pairwise
 import numpy as np
 
 from gcxform.flow.walk import Walk
+from gcxform.flow.words_first import behind, of_call
 from gcxform.syntax.tree import Statement
 from gcxform.system.arrays import Ints
 from gcxform.values import dataclass
@@ -136,10 +137,24 @@ class Spelled:
         block = at.block + line - at.first
         return block, block + 1
 
+    def became(self, step: int, line: int) -> Text:
+        """Return what a line became in a step, with what calls or returns behind its words."""
+        text = self.text(*self.blocks(step, line))
+        if not self.moves_and_calls(line):
+            return text
+        listing = self.walk.listing
+        written = text.text or listing.line_end(line)
+        return Text(behind(written, listing.block(line)), text.lines or (line,))
+
+    def moves_and_calls(self, line: int) -> bool:
+        """Whether a line calls or returns, and its words were executed before that."""
+        return line in self.walk.deciding and bool(of_call(self.walk.listing.block(line)))
+
     def sets(self, line: int) -> bool:
         """Whether a line has an assignment, or decides something, beside what it moves."""
         items = self.walk.listing.block(line).items
-        return line in self.walk.deciding or any(isinstance(i, Statement) for i in items)
+        decides = line in self.walk.deciding and not self.moves_and_calls(line)
+        return decides or any(isinstance(i, Statement) for i in items)
 
 
 def _starts(text: bytes) -> Ints:

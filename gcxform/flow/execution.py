@@ -292,9 +292,9 @@ class Execution(RunState):
     def refuse_more(self, items: list[Word | Statement], addresses: str) -> None:
         """Refuse a block that calls or returns and does anything else, or has a word twice."""
         found = [item.address for item in items if isinstance(item, Word)]
-        alone = len(found) == len(items) == len(set(found)) and set(found) <= set(addresses)
-        if not alone:
-            raise self.refusal("GX210", "something else stands in a block that calls or returns")
+        if len(found) != len(items) or sorted(found) != sorted({*found} & {*addresses}):
+            message = "something else stands in a block that calls or returns"
+            raise self.refusal("GX210", message, "write the call into a block of its own")
 
     def enter(self, call: Call) -> None:
         """Begin a subprogram."""

@@ -18,9 +18,10 @@ from gcxform.flow.macro_programs import PACKED, MacroPrograms
 from gcxform.flow.macro_words import statement_of
 from gcxform.flow.modal_calls import BEGINS, ENDS, Modal, ModalCalls
 from gcxform.flow.numbered_files import begins_program, program_number
-from gcxform.flow.run_state import UNKNOWN, Call, whole_number
+from gcxform.flow.run_state import UNKNOWN, Call, computed, whole_number
 from gcxform.flow.state_read import ALL, NAMES, StateRead
 from gcxform.flow.subprogram_file import returns
+from gcxform.flow.words_first import are_certain, of_call, without
 from gcxform.modal.meaning.tables import COLUMNS
 from gcxform.modal.state import Reading
 from gcxform.syntax.tree import Block, Number, Statement, Word
@@ -147,8 +148,23 @@ class MacroB(MacroPrograms):
             return None
         return frozenset(f"O{number}" for number in (numbers[0], numbers[0] % PACKED))
 
+    def _execute_words(self, block: Block) -> bool:
+        """Execute the words beside a call or a return; return whether there are any."""
+        mine = of_call(block)
+        if not mine or not self.dialect.flow_rule.words_first:
+            return False
+        waits = self.modals.open or self.branches.open or self.branches.over
+        if waits or not are_certain(block, mine, self.dialect) or self.becomes_other(block):
+            return False
+        if len(mine) > 1 and self.state.in_cycle():
+            raise self.refusal("GX210", "P and L may be those of the cycle that is on, or of M98")
+        values = [self._edit(word) for word in block.words if computed(word) and word not in mine]
+        self._write_changed(block, [*values, *without(block, mine)])
+        return True
+
     def _call(self, block: Block, items: list[Word | Statement], own: bool) -> None:
-        self.refuse_more(items, "MPL")
+        if not self._execute_words(block):
+            self.refuse_more(items, "MPL")
         target, times = self.called(block)
         name = f"M98 P{target}"
         if own:
@@ -251,11 +267,12 @@ class MacroB(MacroPrograms):
         return list(self.dialect.load_grammar().parse(text).words)
 
     def _return(self, block: Block, items: list[Word | Statement]) -> None:
-        self.refuse_more(items, "MP")
+        if not self._execute_words(block):
+            self.refuse_more(items, "MP")
         call = self.calls[-1]
         call.times -= 1
         if call.times:
-            if len(items) > 1:
+            if _has(block, "P"):
                 raise self.refusal("GX210", "M99 goes to a line, and the call is not over")
             self._begin_again(call)
             return

@@ -52,6 +52,11 @@ class StateRead:
         modes = {} if open_ else {**_codes(state), **_words(state)}
         return {**dict.fromkeys(ALL, math.nan), **modes, **_place(state, self.places.axes)}
 
+    def in_cycle(self) -> bool:
+        """Whether a cycle is on, or only the machine knows. Raises InputError."""
+        state = self.places.now()
+        return bool(state.lost_modes) or state.memory.get("cycle", CYCLE_OFF) != CYCLE_OFF
+
 
 def _codes(state: State) -> dict[Key, float]:
     """Return the codes in force that the program has stated."""

@@ -28,7 +28,7 @@ MUTATIONS = (
         "gcxform/flow/walk.py",
         "tests/test_corpus.py::test_case[structure/elseif-reads-what-was-set]",
     ),
-    _fold("a call in what is written out is none", "return calls or any(line", "return any(line"),
+    _fold("a call in what is written out is none", "return calls or not all(", "return not all("),
     _fold(
         "values that are set behind a call are one",
         " and self.spelled.raw(line) in text.text",

@@ -12,6 +12,34 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "words beside a call are not executed",
+        "gcxform/flow/macros.py",
+        "self._write_changed(block, [*values, *without(block, mine)])",
+        "pass",
+        "flow/fanuc-words-and-call",
+    ),
+    _macro(
+        "a call behind words is lost where they are written anew",
+        "gcxform/emit/spelled.py",
+        "return Text(behind(written, listing.block(line)), text.lines or (line,))",
+        "return text",
+        "structure/fanuc-words-and-call",
+    ),
+    _macro(
+        "P is that of M98 with a cycle on",
+        "gcxform/flow/macros.py",
+        "if len(mine) > 1 and self.state.in_cycle():",
+        "if False:",
+        "flow/fanuc-words-and-call-in-a-cycle",
+    ),
+    _macro(
+        "words come first on a Haas too",
+        "plugins/gcxform_plugins/dialects/haas.py",
+        "words_first=False",
+        "words_first=True",
+        "flow/haas-words-and-call",
+    ),
+    _macro(
         "what ends the program may move as well",
         "gcxform/flow/branches.py",
         "and not (meaning.axes or meaning.acts)",

@@ -203,7 +203,12 @@ class Fanuc(gx.Dialect):
         unknown_m=gx.MCode("user", loses_position=True, takes="PQ"),
     )
     flow_rule = gx.FlowRule(
-        "macro-b", v.with_logic(v.MACRO_B), macro_levels=4, lookup=FILES, null_compare="distinct"
+        "macro-b",
+        v.with_logic(v.MACRO_B),
+        macro_levels=4,
+        lookup=FILES,
+        null_compare="distinct",
+        words_first=True,
     )
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)

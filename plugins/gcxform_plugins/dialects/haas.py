@@ -144,6 +144,7 @@ class Haas(Fanuc):
         repeats_keep=True,
         argument_list="II",
         null_compare="",
+        words_first=False,
     )
     point_rule = replace(
         Fanuc.point_rule,

@@ -43,6 +43,7 @@ SPACE = "it cuts an arc in space"
 BY_H = "posts for it call by H"
 
 UNTITLED = replace(Fanuc.program_rule, has_title=False)
+CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
 
 
 class Mazak(Fanuc):
@@ -50,6 +51,7 @@ class Mazak(Fanuc):
 
     name = "mazak"
     kin = "fanuc"
+    flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     point_rule = replace(Fanuc.point_rule, dwell={"X": 1.0, "P": 0.001})
 
@@ -59,6 +61,7 @@ class Mitsubishi(Fanuc):
 
     name = "mitsubishi"
     kin = "fanuc"
+    flow_rule = CALLS_ALONE
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
 
 
@@ -77,6 +80,7 @@ class Syntec(Fanuc):
 
     name = "syntec"
     kin = "fanuc"
+    flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Fanuc.codes.items() if not n.startswith(("G54.", "G10"))},
@@ -106,6 +110,7 @@ class Brother(Fanuc):
 
     name = "brother"
     kin = "fanuc"
+    flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **Fanuc.codes,
@@ -128,6 +133,7 @@ class Hurco(Fanuc):
 
     name = "hurco"
     kin = "fanuc"
+    flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in HURCO_GONE},
