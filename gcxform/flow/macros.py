@@ -61,8 +61,10 @@ class MacroB(MacroPrograms):
         if alias or (
             words and words[0] is items[0] and self.values.levels and _code(words[0]) == "G65"
         ):
+            self._refuse_assignments(len(words) < len(items))
             return self._call_with_values(block, words, *(alias or ()))
         if self._is_modal(block, words):
+            self._refuse_assignments(len(words) < len(items))
             return True
         codes = {whole_number(i) for i in items if isinstance(i, Word) and i.address == "M"}
         if 98 in codes or (97 in codes and self.dialect.flow_rule.calls_own_lines):
@@ -207,6 +209,12 @@ class MacroB(MacroPrograms):
         self.enter(call)
         self.values.give(call)
         return True
+
+    def _refuse_assignments(self, stand: bool) -> None:
+        """Refuse assignments that stand in a block which calls: what it does with them is open."""
+        if stand:
+            message = "whether the assignment beside this call acts before it is not certain"
+            raise self.refusal("GX206", message, "write it into a block of its own")
 
     # --- modal calls ---
 

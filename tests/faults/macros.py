@@ -12,6 +12,20 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "an assignment beside a call is passed over",
+        "gcxform/flow/macros.py",
+        "if stand:",
+        "if False:",
+        "flow/fanuc-assignment-beside-a-call",
+    ),
+    _macro(
+        "an assignment may read what another of its block sets",
+        "gcxform/modal/meaning/statements.py",
+        "and reads.isdisjoint(sets)",
+        "",
+        "flow/fanuc-assignments-in-an-order",
+    ),
+    _macro(
         "words beside a call are not executed",
         "gcxform/flow/macros.py",
         "self._write_changed(block, [*values, *without(block, mine)])",

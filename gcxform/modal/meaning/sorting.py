@@ -32,6 +32,7 @@ from gcxform.modal.meaning.numbered import (
 )
 from gcxform.modal.meaning.percent import behind_percent, is_dropped
 from gcxform.modal.meaning.printed import is_output, print_hangs_on, prints_values, read_output
+from gcxform.modal.meaning.statements import read_statement, stands_alone
 from gcxform.modal.meaning.too_many import drops_move, too_many
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
@@ -87,7 +88,7 @@ def _items(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
                 meaning.slots.setdefault(item.address, slot)
                 slot += 1
         elif isinstance(item, Statement):
-            yield from _statement(item, shape, dialect)
+            yield from read_statement(item, shape, dialect)
             meaning.assignments.append(item)
             meaning.acts += table_acts(item, dialect)
         elif isinstance(item, Mark):
@@ -103,7 +104,7 @@ def _mark(item: Mark, shape: Shape, dialect: type[Dialect], meaning: Meaning) ->
     meaning.percent |= item.kind == "percent" and not is_dropped(shape, dialect)
     if item.kind == "percent" and dialect.program_rule.has_percent:
         yield from behind_percent(item, shape, dialect)
-    if item.kind == "program_name" and not _stands_alone(item, shape):
+    if item.kind == "program_name" and not stands_alone(item, shape):
         size = item.end - item.start
         yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
     if is_output(item):
@@ -134,27 +135,6 @@ def _expression(word: Word, dialect: type[Dialect]) -> Iterator[Refusal]:
         return
     hint = "let the CAM write plain numbers, or use passes that keep positions"
     yield Refusal("GX206", word.start, word.end - word.start, message, hint)
-
-
-def _statement(item: Statement, shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
-    """Refuse what is not an assignment, and one that takes effect at an uncertain time."""
-    arithmetic, message = dialect.flow_rule.arithmetic, ""
-    if arithmetic is None or item.kind != "assignment":
-        message = f"{item.kind.replace('_', ' ')} is code that would have to be run"
-    elif not arithmetic.beside_words and not _stands_alone(item, shape):
-        message = "whether this assignment acts before the rest of its block is not certain"
-    if message:
-        hint = "let the CAM write plain blocks, or use passes that keep positions"
-        yield Refusal("GX206", item.start, item.end - item.start, message, hint)
-
-
-def _stands_alone(item: Statement | Mark, shape: Shape) -> bool:
-    """Whether a statement is all that its block does."""
-    others = (other for other in shape.block.items if other is not item)
-    return all(
-        isinstance(other, Comment | Mark) or (isinstance(other, Word) and other.address == "N")
-        for other in others
-    )
 
 
 def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Refusal]:
