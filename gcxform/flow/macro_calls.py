@@ -21,7 +21,7 @@ LOCALS_AT_START, REPEATS = "local-variables", "macro-repeat"
 BY = " by "
 T_VALUE = 149
 """The variable that has the value of a T that calls (6001#5, executor B-62093E-1 p. 32)."""
-NO_VALUES = "PLGN"
+NO_VALUES = "PL"
 """Addresses of a call that give no values: what is called, and how often."""
 
 
@@ -37,6 +37,10 @@ class ValueCalls:
 
     def made_by(self, name: str, words: list[Word], times: int, back: int) -> Call:
         """Return the call that words make. Raises InputError for more of them than may be open."""
+        for word in words:
+            if word.address in NO_VALUES and [w.address for w in words].count(word.address) > 1:
+                place = (word.start, word.end)
+                raise self.run.refusal("GX203", f"{word.address} stands here twice", place=place)
         given = arguments(self.run, [w for w in words if w.address not in NO_VALUES])
         return self.with_values(name, given, times, back)
 

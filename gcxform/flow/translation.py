@@ -281,7 +281,9 @@ class Translator(LineShapes):
         shape, numbers = self.shape(self.line, text)
         learned, slots = self._learned, shape.slots
         if learned is None or slots is None or shape.comments:
-            return blocks(shape.items(numbers))
+            made = blocks([item for item in shape.items(numbers) if item.kind != COMMENT])
+            seen = self.shape(self.line)[0].comments  # an expression may hide what is behind it
+            return [*_with_comments(made, shape.comments if not seen else "")]
         found = learned.blocks(shape, slots, numbers)
         learned.leave()
         if found is not None:

@@ -29,6 +29,13 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "fagor: a polar word may stand twice",
+        "plugins/gcxform_plugins/dialects/fagor/polar.py",
+        'if sum(i.kind in ("word", "incremental") for i in items) > len(named):',
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/fagor/polar-twice]",
+    ),
+    Mutation(
         "fagor: G53 says nothing to the same control",
         PROGRAMS,
         'code == "G53" or code in tables.COMP',

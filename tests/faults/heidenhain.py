@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "heidenhain: a polar word may stand twice",
+        "plugins/gcxform_plugins/dialects/heidenhain/moves.py",
+        "if len({*names}) < len(names):",
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-polar-twice]",
+    ),
+    Mutation(
         "klartext: an arc that names the height at which it stands is a helix",
         "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
         'if axis in "XY" or not self._stays(axis, to)}',

@@ -26,6 +26,20 @@ MUTATIONS = (
         "flow/fanuc-assignments-in-an-order",
     ),
     _macro(
+        "a code among arguments is passed over",
+        "gcxform/flow/macro_calls.py",
+        'NO_VALUES = "PL"',
+        'NO_VALUES = "PLG"',
+        "flow/fanuc-code-in-a-call",
+    ),
+    _macro(
+        "a call may name two programs",
+        "gcxform/flow/macro_calls.py",
+        "count(word.address) > 1",
+        "count(word.address) > 2",
+        "flow/fanuc-program-twice-in-a-call",
+    ),
+    _macro(
         "words beside a call are not executed",
         "gcxform/flow/macros.py",
         "self._write_changed(block, [*values, *without(block, mine)])",

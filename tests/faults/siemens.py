@@ -43,6 +43,13 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: a text that is shown is read as a word beside what is computed",
+        "gcxform/flow/translation.py",
+        "made = blocks([item for item in shape.items(numbers) if item.kind != COMMENT])",
+        "made = blocks(shape.items(numbers))",
+        f"{CASES}[dialects/siemens/message-beside-a-value]",
+    ),
+    Mutation(
         "siemens: CT behind a hole goes on as before it",
         BLOCKS,
         "hole.own_feed\n        self.along = None",

@@ -100,6 +100,8 @@ class Polar(Blocks):
         """Return a block with X and Y for R and Q."""
         item = named.get("Q") or named["R"]
         motion = self._motion(codes, item)
+        if sum(i.kind in ("word", "incremental") for i in items) > len(named):
+            raise self.refusal("GX203", "a word stands here twice", item)
         if self.plane != "G17" or self.pole is None or named.keys() & {"X", "Y"}:
             self.refuse("polar words outside of G17, beside X or Y, or about an unknown pole", item)
         steps = self._steps(codes)

@@ -322,6 +322,9 @@ class Moves(Saying):
 
     def _polar_words(self, said: Said) -> tuple[dict[str, float], dict[str, str]]:
         """Return PR and PA and their like, and the end along Z."""
+        names = [item.name.removeprefix("I") for item in said.axes]
+        if len({*names}) < len(names):
+            raise self.refusal("GX203", "a coordinate stands here twice", said.axes[0])
         given: dict[str, float] = {}
         ends: dict[str, str] = {}
         for item in said.axes:
@@ -332,8 +335,6 @@ class Moves(Saying):
             if axis != "Z":
                 self.refuse(f"{item.name} beside polar coordinates", item)
             ends[axis] = number
-        if {"PR", "IPR"} <= given.keys() or {"PA", "IPA"} <= given.keys():
-            raise self.refusal("GX203", "a polar coordinate stands here twice", said.axes[0])
         return given, ends
 
     def _last_polar(self, path: gx.Item) -> tuple[float, float]:
