@@ -249,6 +249,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/fanuc/title-for-linuxcnc]",
     ),
     Mutation(
+        "reading: the end of a block is passed over where another follows",
+        "grammars/gcxform_grammars/fanuc.lark",
+        "(?=(?:\\([^()]*\\)[ \\t;]*)*$)",
+        "",
+        "tests/test_corpus.py::test_case[dialects/fanuc/block-end-inside]",
+    ),
+    Mutation(
         "reading: a word behind the first bracket of a comment is text",
         "grammars/gcxform_grammars/fanuc.lark",
         "[^()0-9#",
