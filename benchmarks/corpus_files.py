@@ -15,7 +15,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from gcxform.cli.program.new_machine import Places, write_new
+from gcxform.cli.program.new_machine import Places, Wanted, write_new
 
 HERE = Path(__file__).resolve().parent
 KNOWN = HERE / "corpus_machines" / "known.toml"
@@ -49,7 +49,7 @@ def written(
             write_new(
                 [str(each) for each in programs],
                 dialect,
-                chain,
+                Wanted(chain, None),
                 Places(str(machine), str(pipeline)),
             )
             for file in (machine, pipeline):

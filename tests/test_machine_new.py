@@ -367,3 +367,51 @@ def test_a_macro_that_is_not_at_hand_has_the_number_of_its_call(here: Path) -> N
     done = call("machine", "new", "-f", "fanuc", "part.nc", "-o", "m.toml")
     assert done.exit_code == 0, done.stderr
     assert "a call takes a number in P" in done.stderr
+
+
+HOUSING = """%
+O2001 (HOUSING)
+G90 G94 G17 G49 G40 G80 G21
+G28 G91 Z0.
+G90
+T1 M6
+G54 G0 X-10. Y0.
+G43 Z10. H1
+G1 Z-0.5 F300.
+G28 G91 Z0.
+T5 M6
+G90 G55 G0 X10. Y10.
+G43 Z10. H5
+G28 G91 Z0.
+M30
+%
+"""
+
+
+@pytest.mark.parametrize("target", ["haas", "linuxcnc", "siemens"])
+def test_what_a_translation_needs_is_asked_for_at_once(shop: Path, target: str) -> None:
+    """Ways home become G53: that takes home, the work offsets and the lengths of the tools."""
+    (shop / "housing.nc").write_text(HOUSING)
+    new = ("machine", "new", "-f", "fanuc", "-t", target, "shop/housing.nc", "-o", "h.toml")
+    assert call(*new, "-p", "q.toml").exit_code == 0
+    text = (shop.parent / "h.toml").read_text()
+    for section in ("home.G28", "work-offset.G54", "work-offset.G55", "tool.1", "tool.5"):
+        assert f"[{section}]" in text
+    assert f'[output]\ndialect = "{target}"' in (shop.parent / "q.toml").read_text()
+    fill_in(shop.parent / "h.toml", inert_m='"?"')
+    done = call("run", "-p", "q.toml", "shop/housing.nc", "-o", "out.nc")
+    assert done.exit_code == 0, done.output
+
+
+def test_a_way_home_says_what_it_takes_for_another_control(shop: Path) -> None:
+    """And no more than that: what the file says already is not asked for again."""
+    (shop / "housing.nc").write_text(HOUSING)
+    (shop.parent / "h.toml").write_text(
+        "format = 1\n[home.G28]\nZ = 0.0\n[work-offset.G54]\nX = 1.0\nY = 1.0\nZ = 1.0\n"
+    )
+    run = ("run", "-f", "fanuc", "-t", "linuxcnc", "-x", "", "shop/housing.nc", "-o", "out.nc")
+    said = call(*run).output
+    assert "Z = ... in [home.G28], Z = ... in [work-offset.G54]" in said
+    said = call(*run, "-m", "h.toml").output
+    assert "give a machine file with length = ... in [tool.1]" in said
+    assert "home" not in said.partition("hint")[2]

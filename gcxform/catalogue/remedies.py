@@ -11,7 +11,7 @@ One offer is enough, but where a machine file has to say several places at once 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Final, Literal, NamedTuple, Self
 
 from gcxform.catalogue.settings import Setting, for_chain, settings
@@ -112,7 +112,7 @@ SET_ANEW: Final = " as set anew"
 
 def _offsets_said(*names: str) -> str:
     """Return the settings of a machine file that say where work offsets are; `*` for no name."""
-    quoted = {n: f'"{n}"' if "." in n or " " in n else n for n in names if OFFSET.fullmatch(n)}
+    quoted = {n: _quoted(n) for n in names if OFFSET.fullmatch(n)}
     sections = list(dict.fromkeys(quoted.values())) if len(quoted) == len({*names}) else ["*"]
     return ", ".join(f"X = ... in [work-offset.{each}]" for each in sections)
 
@@ -130,6 +130,24 @@ def ways_to_offsets(first: str, *names: str) -> str:
 def tool_said(number: float) -> str:
     """Return the setting of a machine file that puts a tool into the table."""
     return f"if it is in the table of the control: length = ... in [tool.{number:g}]"
+
+
+def way_home_said(code: str, axis: str, offsets: Iterable[str], lengths: list[str]) -> list[str]:
+    """Return the settings that say where an axis goes by a way home; none where none would do.
+
+    `offsets` and `lengths` are those that the place hangs on and that are not known, as frames
+    name them. The first of the settings is home.
+    """
+    tools = [re.fullmatch("-?H([0-9]+)", each) for each in lengths]
+    if not all(tools) or not all(map(OFFSET.fullmatch, offsets)):
+        return []
+    said = [f"{axis} = ... in [work-offset.{_quoted(each)}]" for each in offsets]
+    said += [f"length = ... in [tool.{tool[1]}]" for tool in tools if tool]
+    return [f"{axis} = ... in [home.{_quoted(code)}]", *said]
+
+
+def _quoted(name: str) -> str:
+    return f'"{name}"' if "." in name or " " in name else name
 
 
 def put_before(name: str, step: str = "", options: str = "", why: str = "") -> Hint:

@@ -17,7 +17,7 @@ from gcxform.cli.common.derived_options import built, help_of, metavar_of
 from gcxform.cli.common.failures import warn
 from gcxform.cli.common.outputs import STDOUT, check_places, destination
 from gcxform.cli.common.request import Asked
-from gcxform.cli.program.new_machine import Places, write_new
+from gcxform.cli.program.new_machine import Places, Wanted, write_new
 from gcxform.contract.options import OptionDoc, describe
 from gcxform.diagnostics import Location, UsageError
 from gcxform.machine.chain import Chain, chain_of
@@ -98,6 +98,7 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
 
 @command.command("new")
 @options.FROM
+@options.TO
 @click.option("-x", "--chain", metavar="CHAIN", help="What is to be done.  [default: any passes]")
 @click.option(
     "-o", "--output", metavar="FILE", default=STDOUT, help="The machine file.  [default: stdout]"
@@ -107,6 +108,7 @@ def _chain(asked: Asked, number: int | None) -> tuple[Chain, Machine]:
 def new(
     programs: tuple[str, ...],
     dialect: str | None,
+    to: str | None,
     chain: str | None,
     output: str,
     pipeline: str | None,
@@ -116,7 +118,7 @@ def new(
     Programs are files, or folders of them. Each setting says how many programs need it; "?" stands
     for what is to be filled in. Where FILE is there already, what is new is added to it.
     """
-    write_new(programs, dialect, chain, Places(output, pipeline))
+    write_new(programs, dialect, Wanted(chain, to), Places(output, pipeline))
 
 
 # --- from controls ---

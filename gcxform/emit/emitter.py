@@ -9,6 +9,7 @@ words are taken from are made, and `gcxform/emit/writing.py` makes text of them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import numpy as np
@@ -235,25 +236,31 @@ class _Job:
     def _refuse_ways_home(self) -> None:
         """Refuse ways home that the target would have to say by G53, and of which none knows how.
 
-        There they end a tool length, or are not known to move what they move here.
+        There they go elsewhere, end a tool length, or are not known to move what they move here.
         """
         task, saying = self.task, self.task.manner.saying
         codes, first = task.manner.source.codes, task.path.blocks.first
         if not saying.crosses:
             return
         for event in task.read.path.events:
-            code = codes.get(event.what)
-            if code is None or code.act != HOME or event.line - first in task.read.homed:
+            code, line = codes.get(event.what), event.line - first
+            if code is None or code.act != HOME or line in task.read.homed:
                 continue
-            path, line = task.read.path, event.line - first
+            path = task.read.path
             row, end = np.searchsorted(path.block, [line, line + 1]).tolist()
             called = end > row and path.frames[path.frame[row]].called
-            if saying.instead(event.what) == event.what and saying.moves_home(
-                event.what, end - row == 1, called
-            ):
-                target = task.manner.target.name
-                message = f"{target} cannot say {event.what}: it does more there"
-                raise InputError.one("GX501", message, task.location(line), WAY_HOME)
+            same = saying.instead(event.what) == event.what
+            more = same and saying.moves_home(event.what, end - row == 1, called)
+            if more or (not same and line in task.read.ways_open):
+                why = "it does more there" if more else "it goes to a point of another kind there"
+                message = f"{task.manner.target.name} cannot say {event.what}: {why}"
+                said = task.read.ways_open.get(line, "")
+                hint = f"give a machine file with {said}" if said else WAY_HOME
+                where = task.location(line)
+                found = re.search(rf"{event.what[0]}[ \t]*0*{event.what[1:]}(?![0-9.])", where.text)
+                place = found.span() if found else (0, len(where.text))
+                where = task.location(line, place[0], place[1] - place[0])
+                raise InputError.one("GX501", message, where, hint)
 
     def _refuse_dwells(self) -> None:
         """Refuse cycles that stand as they are, and would wait for another time in the target."""

@@ -46,7 +46,8 @@ class Interpreted:
     (live,) are lines that move something and may not be executed; None: there are none. `loses`
     (live,) are lines behind which no position is known. `zeroed` are the lines of the program, from
     0, that set where something counts from, and the state of the frames behind each. `homed` are
-    lines that only go to a point of the machine which is known.
+    lines that only go to a point of the machine which is known; `ways_open` of one that is not, the
+    settings that would say it.
     `lengths` are the lines that put a tool length in force, and its vector, mm.
     """
 
@@ -62,6 +63,7 @@ class Interpreted:
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
     zeroed: tuple[tuple[int, FrameState], ...] = ()
     homed: Mapping[int, WayHome] = field(default_factory=dict)
+    ways_open: Mapping[int, str] = field(default_factory=dict)
     lengths: Mapping[int, tuple[float, float, float]] = field(default_factory=dict)
 
 
@@ -171,6 +173,7 @@ class Interpreter:
             lines.loses_position(),
             tuple(moves.track.zeroed),
             moves.track.homed,
+            moves.track.ways_open,
             moves.track.lengths,
         )
 

@@ -92,8 +92,8 @@ MUTATIONS = (
     Mutation(
         "saying: a bare way home moves axes whose home is not known",
         "gcxform/modal/moves/home.py",
-        "for k, axis in enumerate(track.axes) if axis in named):",
-        "for k, axis in enumerate(track.axes) if axis in words):",
+        "if a in named and not isfinite(home[k])",
+        "if a in words and not isfinite(home[k])",
         f"{ACROSS}/home-of-all-unknown]",
     ),
     Mutation(
@@ -386,9 +386,23 @@ MUTATIONS = (
     Mutation(
         "saying: a way home that ends a length there is copied where nobody knows home",
         "gcxform/emit/emitter.py",
-        "if saying.instead(event.what) == event.what and saying.moves_home(",
-        "if False and saying.moves_home(",
+        "more = same and saying.moves_home(",
+        "more = False and saying.moves_home(",
         f"{ACROSS}/home-ends-length]",
+    ),
+    Mutation(
+        "saying: a way home does not ask for the length that it hangs on",
+        "gcxform/catalogue/remedies.py",
+        'said += [f"length = ... in [tool.{tool[1]}]" for tool in tools if tool]',
+        "pass",
+        "tests/test_machine_new.py::test_a_way_home_says_what_it_takes_for_another_control",
+    ),
+    Mutation(
+        "saying: a way home asks again for a home that is known",
+        "gcxform/modal/moves/home.py",
+        "found += said[known:]",
+        "found += said",
+        "tests/test_machine_new.py::test_a_way_home_says_what_it_takes_for_another_control",
     ),
     Mutation(
         "saying: a dwell of a length that is not known is written",

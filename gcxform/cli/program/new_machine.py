@@ -36,7 +36,14 @@ class Places(NamedTuple):
     pipeline: str | None
 
 
-def write_new(paths: Sequence[str], dialect: str | None, chain: str | None, places: Places) -> None:
+class Wanted(NamedTuple):
+    """What is to be done with the programs: a chain, and the dialect to write; None: as read."""
+
+    chain: str | None
+    to: str | None
+
+
+def write_new(paths: Sequence[str], dialect: str | None, wanted: Wanted, places: Places) -> None:
     """Write what programs need; what the files say already is kept, and taken for known.
 
     Raises UsageError where a program would be overwritten.
@@ -48,20 +55,20 @@ def write_new(paths: Sequence[str], dialect: str | None, chain: str | None, plac
     found = Survey()
     with visit():  # what is read here are also the files that are added to
         read = dialect_of(files, known)
-        pipelines = list(_pipelines(read.dialect, chain, places))
+        pipelines = list(_pipelines(read.dialect, wanted, places))
         for file in read.files:
             with opened(str(file)) as source:
                 found.add(source, pipelines, speaks_against)
-    _write(read, found, chain, places)
+    _write(read, found, wanted, places)
 
 
-def _pipelines(dialect: str, chain: str | None, places: Places) -> Iterator[Pipeline]:
+def _pipelines(dialect: str, wanted: Wanted, places: Places) -> Iterator[Pipeline]:
     """Yield the pipelines for which programs are looked at, with what files say already."""
     machine = places.machine if _is_there(places.machine) else None
-    bare = Asked(chain="", dialect=dialect, machine=machine).build()
+    bare = Asked(chain="", dialect=dialect, to=wanted.to, machine=machine).build()
     if bare.machine is None:  # passes ask for one that has none of what they need
         bare = replace(bare, machine=Machine(file=Path(places.machine)))
-    for each in (chain,) if chain is not None else ANY_PASSES:
+    for each in (wanted.chain,) if wanted.chain is not None else ANY_PASSES:
         steps = tuple(parse_chain(each, Path.cwd(), default_registry()))
         pipeline = replace(bare, passes=steps)
         if places.pipeline and _is_there(places.pipeline):
@@ -82,7 +89,7 @@ def _is_there(name: str) -> bool:
 # --- what is written ---
 
 
-def _write(read: Programs, found: Survey, chain: str | None, places: Places) -> None:
+def _write(read: Programs, found: Survey, wanted: Wanted, places: Places) -> None:
     """Write both files, and say what was found."""
     asked, notes = found.asked(), found.notes()
     of_pipeline = [question for question in asked if question[0] == PIPELINE]
@@ -90,7 +97,7 @@ def _write(read: Programs, found: Survey, chain: str | None, places: Places) -> 
     head = _text("machine", places.machine, ["format = 1"])
     text = with_questions(head, of_machine, notes, read.dialect, places.machine)
     if places.pipeline:
-        head = _text("pipeline", places.pipeline, _pipeline_head(read, chain, places))
+        head = _text("pipeline", places.pipeline, _pipeline_head(read, wanted, places))
         other = with_questions(head, of_pipeline, notes, read.dialect, places.pipeline)
         with destination(places.pipeline) as put:
             put(other.encode())
@@ -112,13 +119,15 @@ def _text(kind: Kind, name: str, head: Iterable[str]) -> str:
     return "\n".join([*schema, said, *head, ""])
 
 
-def _pipeline_head(read: Programs, chain: str | None, places: Places) -> Iterator[str]:
+def _pipeline_head(read: Programs, wanted: Wanted, places: Places) -> Iterator[str]:
     """Yield a pipeline file of which only `[input]` is to be filled in."""
     yield from ("format = 1", "", "[input]", f'dialect = "{read.dialect}"')
     if places.machine != STDOUT:
         folder = Path(places.pipeline or "").resolve().parent
         yield from ("", "[machine]", f'file = "{os.path.relpath(places.machine, folder)}"')
-    for step in (chain or DEFAULT).split("|"):
+    if wanted.to:
+        yield from ("", "[output]", f'dialect = "{wanted.to}"')
+    for step in (wanted.chain or DEFAULT).split("|"):
         name, *options = step.split()
         yield from ("", "[[pass]]", f'use = "{name}"')
         yield from (_option(option) for option in options)

@@ -64,7 +64,7 @@ class Track:
     """Follows position and frame; `state.position` and `state.frames` are left up to date.
 
     `may_step` (lines,) are the moves that may go by distances from where it is not known; `zeroed`,
-    `homed` and `lengths` are as in `Interpreted`.
+    `homed`, `ways_open` and `lengths` are as in `Interpreted`.
     """
 
     def __init__(self, lines: Lines, modes: Modes, axes: str) -> None:
@@ -81,6 +81,7 @@ class Track:
         self.breaks: list[Break] = []
         self.zeroed: list[tuple[int, FrameState]] = []
         self.homed: dict[int, WayHome] = {}
+        self.ways_open: dict[int, str] = {}
         self.lengths: dict[int, tuple[float, float, float]] = {}
         self._columns: dict[str, tuple[Floats, Flags] | None] = {}
         self.may_step = np.zeros(lines.live, np.bool_)

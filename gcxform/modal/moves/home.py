@@ -5,10 +5,12 @@ So does G31, which is a probing move for its block alone.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isfinite, isnan, nan
 
 import numpy as np
 
+from gcxform.catalogue.remedies import way_home_said
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR
 from gcxform.modal.frames.track import LEFT, Track
@@ -114,11 +116,28 @@ def _note_machine(
     named = set(words) or every
     if not (still or not words) or not named.issubset(track.axes):
         return
-    if not all(isfinite(home[k]) for k, axis in enumerate(track.axes) if axis in named):
+    open_ = {a: k for k, a in enumerate(track.axes) if a in named and not isfinite(home[k])}
+    if open_:
+        track.ways_open[line] = _what_would_say(track, code, open_)
         return
     shift = tuple(np.nan_to_num(frames.machine).tolist())
     frame = Frame(frames.work, shift, (frames.first,) * len(track.axes), machine=True)
     track.homed[line] = WayHome(code.split()[0], frame, not words, track.frame.called)
+
+
+def _what_would_say(track: Track, code: str, axes: Mapping[str, int]) -> str:
+    """Return the settings that say where axes, with their columns, go by a way home; or nothing."""
+    frames, found = track.state.frames, list[str]()
+    for axis, k in axes.items():
+        offset, *lengths = track.frame.origin[k].split(" + ")
+        offsets = dict.fromkeys([frames.first] * isnan(frames.machine[k]))
+        offsets |= dict.fromkeys([offset] * (offset != frames.first))
+        said = way_home_said(code, axis, [*offsets], lengths)
+        if not said:
+            return ""
+        known = isfinite(frames.homes.get(code, {}).get(axis, nan))
+        found += said[known:]
+    return ", ".join(dict.fromkeys(found))
 
 
 def _let_go_of_length(track: Track, line: int, code: str) -> None:
