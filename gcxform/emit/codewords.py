@@ -25,8 +25,8 @@ from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Number, Word
 
 WAY_HOME: Final = (
-    "G91 G28 Z0 and the like can be said by G53: give the machine file where home and the zero of "
-    "the work offset are, [home.G28] and [work-offset.G54]"
+    "write the point on the way, if there is one, in a block of its own before; G91 G28 Z0 and the "
+    "like are said by G53 where the machine file has [home.G28] and the zero of the work offset"
 )
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)

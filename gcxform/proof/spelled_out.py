@@ -110,13 +110,15 @@ def _differences(
 def _lost(a: Toolpath, b: Toolpath) -> Any:
     """Return before which moves an axis is lost in one path alone (n,).
 
-    Along a tool whose length nobody has said, one is where that begins to count or ends to: by G49
-    and G43 about a move in the machine, which is said without them where it counts all along.
+    Along a tool whose length nobody has said, one is where that begins to count or ends to, or
+    another does: by G49 and G43 about a move in the machine, which is said without them where it
+    counts all along; or by the change of the tool and not by G43 behind it.
     """
     differ = a.lost ^ b.lost
     for path in (a, b):
-        open_ = np.array([np.isnan(frame.tool[ALONG]) for frame in path.frames])[path.frame]
-        begins = np.diff(open_.astype(np.int8), prepend=open_[:1].astype(np.int8)) != 0
+        open_ = [f.origin[ALONG] if np.isnan(f.tool[ALONG]) else "" for f in path.frames]
+        counts = np.array([open_.index(name) for name in open_], np.int64)[path.frame]
+        begins = np.diff(counts, prepend=counts[:1]) != 0
         differ[begins] &= ~(1 << ALONG)
     return differ != 0
 

@@ -45,6 +45,27 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "heidenhain: a tool that is fetched is not said",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        "        if fetched:",
+        "        if False:",
+        "tests/test_corpus.py::test_case[dialects/across/tools-fetched-for-klartext]",
+    ),
+    Mutation(
+        "heidenhain: a tool that is fetched is not read",
+        "plugins/gcxform_plugins/dialects/heidenhain/klartext.py",
+        'return [] if match[2] or match[3] else [f"T{match[1]}"]',
+        "return []",
+        "tests/test_corpus.py::test_case[dialects/across/tools-fetched-for-klartext]",
+    ),
+    Mutation(
+        "heidenhain: a length that follows another is lost in one program alone",
+        "gcxform/proof/spelled_out.py",
+        "counts = np.array([open_.index(name) for name in open_], np.int64)[path.frame]",
+        "counts = np.array([bool(name) for name in open_], np.int64)[path.frame]",
+        "tests/test_corpus.py::test_case[dialects/across/tools-fetched-for-klartext]",
+    ),
+    Mutation(
         "heidenhain: a polar word may stand twice",
         "plugins/gcxform_plugins/dialects/heidenhain/moves.py",
         "if len({*names}) < len(names):",

@@ -13,7 +13,7 @@ WORD = re.compile(
     r"(F ?MAX|F ?AUTO|DR ?[-+](?![\d.,])|I?P[AR]|I?[XYZABC]|[FRM]) ?([-+]?\d*[.,]?\d*)",
     re.IGNORECASE,
 )
-QUIET = ("BLK", "TOOL DEF", "CYCL DEF 32", "CYCL DEF 7.0", "CYCL DEF 9.0", "*")
+QUIET = ("BLK", "CYCL DEF 32", "CYCL DEF 7.0", "CYCL DEF 9.0", "*")
 
 
 @dataclass
@@ -82,6 +82,9 @@ def _statement(reader: Reader, line: str) -> None:
         reader.over = True
     elif line.startswith("TOOL CALL"):
         _tool(reader, line)
+    elif line.startswith("TOOL DEF"):
+        fetched = re.fullmatch(r"TOOL DEF ?(\d+)", line)
+        reader.events += [f"T{int(fetched[1])}"] if fetched else []
     elif line.startswith("CYCL DEF 7."):
         axis, value = re.findall(r"([XYZ]) ?([-+\d.,]+)$", line)[0]
         old = reader.shift.get(axis, 0.0)

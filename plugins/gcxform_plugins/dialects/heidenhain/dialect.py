@@ -43,7 +43,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
 | TOOL CALL | tool, length, S, F; without number S and F only | [K] |
 | its DL, DR | added to length and radius, which must be known; DR2: refused | iTNC 530, p. 183 |
-| TOOL DEF | no move; must not contradict the machine file | iTNC 530, p. 183 |
+| TOOL DEF | no move; must not contradict the machine file; a number alone is T | iTNC 530, p. 183 |
 | tool 0 | has no length | 640, p. 170 |
 | CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |
 | CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |

@@ -234,7 +234,10 @@ class Klartext(Cycles):
         return [f"T{tool} M6", self._length(item, tool)]
 
     def _tool_def(self, item: gx.Item) -> list[str]:
-        """TOOL DEF: prepares a tool; what it says of it must be what the machine file says."""
+        """TOOL DEF: prepares a tool; what it says of it must be what the machine file says.
+
+        With a number alone it is fetched for the next change.
+        """
         match = TOOL.fullmatch(item.name)
         if match is None and self.reading.stays:
             return []
@@ -247,7 +250,7 @@ class Klartext(Cycles):
                 if text and abs(float(plain(text)) * unit - value) > 1e-9:
                     message = f"{what} of tool {match[1]} is another one in the machine file"
                     self.refuse(message, item, "give the tool its measures in one place")
-        return []
+        return [] if match[2] or match[3] else [f"T{match[1]}"]
 
     # --- following the tip ---
 

@@ -139,7 +139,8 @@ class Lines(gx.Speller):
             self.left_out["G64"] += 1
 
     def _tools(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
-        """Yield TOOL CALL for T, M6 and S."""
+        """Yield TOOL CALL for T, M6 and S, TOOL DEF for a T that is fetched for the next change."""
+        fetched = "T" in values and "M6" not in codes
         self.tool = _plain(values.pop("T")) if "T" in values else self.tool
         number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
         if "M6" in codes:
@@ -150,6 +151,8 @@ class Lines(gx.Speller):
             raise gx.UnspeakableError("the length of another tool than the one in the spindle")
         if number or speed:
             yield f"TOOL CALL{number} Z{speed}"
+        if fetched:
+            yield f"TOOL DEF {self.tool}"
 
     def _ends(self, code: str) -> Iterator[str]:
         if code in ("M2", "M30"):
