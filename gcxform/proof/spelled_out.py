@@ -93,7 +93,9 @@ def _differences(
     cuts = a.kind != Kind.RAPID
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
-    yield from _first(~_same(a.end, b.end, near[:, None]).all(axis=1), "an end")
+    ends = _same(a.end, b.end, near[:, None])
+    ends[(frames[0] != frames[1]) & ~counts, ALONG] = True  # no word of these rows is along it
+    yield from _first(~ends.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
     yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
@@ -108,19 +110,19 @@ def _differences(
 
 
 def _lost(a: Toolpath, b: Toolpath) -> Any:
-    """Return before which moves an axis is lost in one path alone (n,).
+    """Return before which moves it is known in one path alone where an axis stands (n,).
 
     Along a tool whose length nobody has said, one is where that begins to count or ends to, or
     another does: by G49 and G43 about a move in the machine, which is said without them where it
     counts all along; or by the change of the tool and not by G43 behind it.
     """
-    differ = a.lost ^ b.lost
+    differ = np.isnan(a.start) != np.isnan(b.start)
     for path in (a, b):
         open_ = [f.origin[ALONG] if np.isnan(f.tool[ALONG]) else "" for f in path.frames]
         counts = np.array([open_.index(name) for name in open_], np.int64)[path.frame]
         begins = np.diff(counts, prepend=counts[:1]) != 0
-        differ[begins] &= ~(1 << ALONG)
-    return differ != 0
+        differ[begins, ALONG] = False
+    return differ.any(axis=1)
 
 
 def _same_side(
@@ -234,7 +236,18 @@ def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values
     bound = [k for k, each in enumerate(found) if each[1] == "G64" and any(v for _, v in each[2])]
     loose = min(bound, default=len(found))
     found = [each for k, each in enumerate(found) if k >= loose or each[1] != "G64"]
+    found = [*_named_once(found)]
     return found[:-1] if found and found[-1][1] in ENDS else found
+
+
+def _named_once(acts: list[tuple[int, str, Values]]) -> Iterator[tuple[int, str, Values]]:
+    """Yield acts without a T of the tool that is named already: M6 by itself says none there."""
+    named: Values | None = None
+    for act in acts:
+        if act[1] == "T" and act[2] == named:
+            continue
+        named = {"T": act[2], "M6": None}.get(act[1], named)
+        yield act
 
 
 def _frames(path: Toolpath, dialect: type[Dialect]) -> Any:

@@ -29,6 +29,13 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "fagor: a tool that is fetched is not said",
+        "plugins/gcxform_plugins/dialects/fagor/lines.py",
+        'elif "T" in values:',
+        "elif False:",
+        "tests/test_corpus.py::test_case[dialects/across/tools-fetched-for-fagor]",
+    ),
+    Mutation(
         "fagor: a polar word may stand twice",
         "plugins/gcxform_plugins/dialects/fagor/polar.py",
         'if sum(i.kind in ("word", "incremental") for i in items) > len(named):',

@@ -85,6 +85,8 @@ class Lines(gx.Speller):
         if "M6" in names:
             self.in_spindle, self.waits, self.bare = self.tool, True, False
             yield f"T{self.tool} M6"
+        elif "T" in values:
+            yield f"T{self.tool}"
         before = self.length
         if "G43" in names:
             self.length = _plain(values["H"]) if "H" in values else self.in_spindle

@@ -143,6 +143,8 @@ class Lines(gx.Speller):
         fetched = "T" in values and "M6" not in codes
         self.tool = _plain(values.pop("T")) if "T" in values else self.tool
         number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
+        if "M6" in codes and not self.tool:
+            raise gx.UnspeakableError("M6, and which tool it takes no T has said")
         if "M6" in codes:
             number, self.in_spindle = f" {self.tool}", self.tool
             if "M6" not in self.inert:
