@@ -95,6 +95,8 @@ def _differences(
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     ends = _same(a.end, b.end, near[:, None])
     ends[(frames[0] != frames[1]) & ~counts, ALONG] = True  # no word of these rows is along it
+    open_ = np.isnan(a.end[:, ALONG]) != np.isnan(b.end[:, ALONG])
+    ends[open_ & (frames[0] == "") & (frames[1] == ""), ALONG] = True  # `_places` compares these
     yield from _first(~ends.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
     yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")

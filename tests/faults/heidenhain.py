@@ -45,6 +45,20 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "spelled out: a place of the machine is known in one program alone",
+        "gcxform/proof/spelled_out.py",
+        'ends[open_ & (frames[0] == "") & (frames[1] == ""), ALONG] = True',
+        "pass",
+        "tests/test_corpus.py::test_case[dialects/across/place-without-a-length]",
+    ),
+    Mutation(
+        "heidenhain: M5 beside a move is said behind it",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        "BEHIND = frozenset((0, 1, 2, 30))",
+        "BEHIND = frozenset((0, 1, 2, 5, 30))",
+        "tests/test_corpus.py::test_case[dialects/across/stop-beside-a-move-for-klartext]",
+    ),
+    Mutation(
         "heidenhain: an axis that stood nowhere known is lost in one program alone",
         "gcxform/proof/spelled_out.py",
         "differ = np.isnan(a.start) != np.isnan(b.start)",

@@ -24,7 +24,8 @@ MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G97", "G54", "G98", "G99"))
 """Codes that say what a TNC does anyway, as far as the reading of it shows."""
 LAST = 88  # M functions above are those of the control
 TIP = (128, 129)
-BEFORE = frozenset((3, 4, 7, 8))
+BEHIND = frozenset((0, 1, 2, 30))
+"""M functions that act behind the move of a block of words; all others do before it."""
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
@@ -97,7 +98,7 @@ class Lines(gx.Speller):
         functions = [c for c in codes if c[0] == "M" and c != "M6"]
         if own := [c for c in functions if int(c[1:]) > LAST or int(c[1:]) in TIP]:
             raise gx.UnspeakableError(f"{own[0]} has no words in Klartext")
-        ahead = [c for c in functions if int(c[1:]) in BEFORE]
+        ahead = [c for c in functions if int(c[1:]) not in BEHIND]
         if "G64" in codes:
             yield from self._tolerance(_plain(values.pop("P", "0")))
         if "G4" in codes:
