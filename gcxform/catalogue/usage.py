@@ -243,8 +243,8 @@ CODES: dict[str, tuple[str, str]] = {
         "Programs for this control are only read",
         "Its programs are not written in words. They are turned into blocks that are, and what is "
         "written has to be a program of another control: name it in [output], or with -t. A "
-        "SINUMERIK or a TNC may be written from itself, by passes that change neither positions "
-        "nor text, and both from other controls, a TNC by passes that put no stamp into programs.",
+        "SINUMERIK, a Fagor or a TNC may be written from itself and from other controls, by passes "
+        "that change no text; a TNC by such as put no stamp into programs.",
     ),
     "GX748": (
         "A tolerance without a unit, and a large one",

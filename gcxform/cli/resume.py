@@ -15,7 +15,7 @@ from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, needed_dialect
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
-from gcxform.pipeline.plan import check_written
+from gcxform.pipeline.own_language import check_written
 from gcxform.resume.preamble import Preamble
 from gcxform.resume.restart import Restart
 from gcxform.stamps.comment import Stamps, stamps_in, without_lines

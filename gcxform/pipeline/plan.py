@@ -43,6 +43,7 @@ from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
 from gcxform.pipeline.chain import check_chain, compensates, expands_cycles, facts_after
+from gcxform.pipeline.own_language import check_target, target_of, writes_back
 from gcxform.pipeline.reasons import Told
 from gcxform.plugin.registry import dialect_of
 from gcxform.stamps.chain import Marks, against, refusal, stamp_of
@@ -57,14 +58,6 @@ ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
 STRUCTURES = ("keep", "written-out")
 WORDS = ("changed", "programmed", "all")
-
-
-def check_written(dialect: type[Dialect]) -> None:
-    """Raise UsageError for a dialect in which nothing is written."""
-    if dialect.translator is not None:
-        message = f"programs for {dialect.name} are read, and not written"
-        hint = 'dialect = "linuxcnc" in [output]; `gcxform list dialects`'
-        raise UsageError.one("GX747", message, hint=hint)
 
 
 @dataclass(frozen=True)
@@ -113,7 +106,11 @@ class Plan:
     def __post_init__(self) -> None:
         for name, value in self._taken().items():
             object.__setattr__(self, name, value)
-        self._check_target()
+        target = target_of(self)
+        if target is not self.target:
+            object.__setattr__(self, "target", target)
+            self.__dict__.pop("saying", None)  # of the target of before
+        check_target(self)
         self._check_entry()
         self.saying.check()
         check_chain(self.path_passes)
@@ -157,36 +154,6 @@ class Plan:
                 for letter, count in arguments.table("decimals", self.decimals).items()
             },
         }
-
-    def _check_target(self) -> None:
-        """Refuse to write, or to change the text of, programs that are only read."""
-        if (not self.copies or self.passes) and not (self._writes_back() or self._spells_out()):
-            check_written(self.target)
-
-    def _spells_out(self) -> bool:
-        """Whether a program of another control is written in the language of its target.
-
-        What changes text is for programs of words, and so are stamps where the language has no
-        comment that may stand behind the end.
-        """
-        speller = getattr(self.target.translator, "speller", None)
-        if speller is None or self.text_passes or self.source is self.target:
-            return False
-        return bool(speller.comment) or stamp_of(self.passes, self.context, self.words) is None
-
-    def _writes_back(self) -> bool:
-        """Whether a program in a language of its own is written in that language again.
-
-        Its lines are spelled anew where their blocks have changed, so no pass may change text, or
-        positions: what is not understood of such a program stays as it stands.
-        """
-        kind = self.source.translator
-        same = self.source is self.target and getattr(kind, "writes", False)
-        return (
-            same
-            and not self.text_passes
-            and stamp_of(self.passes, self.context, self.words) is None
-        )
 
     def _check_entry(self) -> None:
         """Refuse modes of `[entry]` that are none of the dialect, or two of one group."""
@@ -283,7 +250,7 @@ class Plan:
         open_pecks, tables_stay = same and not expands, same and not folds
         counts = not same or expands or folds or not says_the_same(self.path_passes)
         counts |= any(METRIC in step.ensures for step in self.path_passes)
-        stays = self._writes_back() and not self.copies
+        stays = writes_back(self) and not self.copies
         reading = replace(reading, open_pecks=open_pecks, tables_stay=tables_stay)
         curves = not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)
         return replace(reading, crosses=not same, curves=curves, stays=stays, modes_count=counts)

@@ -43,6 +43,20 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: what is compensated is written for another control alone",
+        "gcxform/pipeline/own_language.py",
+        "return target if plan.copies else type(",
+        "return target if True else type(",
+        f"{CASES}[dialects/siemens/compensated]",
+    ),
+    Mutation(
+        "siemens: what changes text is taken for a program of words",
+        "gcxform/pipeline/own_language.py",
+        "if speller is None or plan.text_passes or plan.source is plan.target:",
+        "if speller is None or plan.source is plan.target:",
+        "tests/test_languages_compensated.py::test_what_a_language_has_no_place_for_is_refused",
+    ),
+    Mutation(
         "siemens: a text that is shown is read as a word beside what is computed",
         "gcxform/flow/translation.py",
         "made = blocks([item for item in shape.items(numbers) if item.kind != COMMENT])",

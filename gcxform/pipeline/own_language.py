@@ -1,0 +1,92 @@
+"""Whether, and how, programs are written whose control has a language of its own.
+
+A program of a control with such a language is written back, line by line, where no pass turns its
+positions into others: what is not understood of it stays as it stands. Else all of it has to be
+understood, and it is written whole, as that of another control would be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from gcxform.contract.passes import PassContext
+from gcxform.diagnostics import UsageError
+from gcxform.dialect.dialect import Dialect
+from gcxform.stamps.chain import stamp_of
+from gcxform.stamps.comment import Stamp
+
+TEXT = "this changes text, and is for programs of words: those for {} have a language of their own"
+STAMP = "what is compensated is stamped, and programs for {} have no place for it behind their end"
+HINT = 'dialect = "linuxcnc" in [output]; `gcxform list dialects`'
+
+
+class Plan(Protocol):
+    """What is asked of a plan."""
+
+    @property
+    def source(self) -> type[Dialect]: ...  # noqa: D102
+    @property
+    def target(self) -> type[Dialect]: ...  # noqa: D102
+    @property
+    def passes(self) -> Sequence[Any]: ...  # noqa: D102
+    @property
+    def text_passes(self) -> Sequence[Any]: ...  # noqa: D102
+    @property
+    def context(self) -> PassContext: ...  # noqa: D102
+    @property
+    def words(self) -> str: ...  # noqa: D102
+    @property
+    def copies(self) -> bool: ...  # noqa: D102
+
+
+def check_written(dialect: type[Dialect]) -> None:
+    """Raise UsageError for a dialect in which nothing is written."""
+    if dialect.translator is not None:
+        message = f"programs for {dialect.name} are read, and not written"
+        raise UsageError.one("GX747", message, hint=HINT)
+
+
+def check_target(plan: Plan) -> None:
+    """Refuse to write, or to change the text of, programs that are only read."""
+    target = plan.target
+    if (plan.copies and not plan.passes) or writes_back(plan) or _spells_out(plan):
+        return
+    if getattr(target.translator, "speller", None) is not None:
+        said = TEXT if plan.text_passes else STAMP
+        raise UsageError.one("GX747", said.format(target.name), hint=HINT)
+    check_written(target)
+
+
+def target_of(plan: Plan) -> type[Dialect]:
+    """Return the target of a plan; one that is like the source where no line is written back."""
+    target = plan.target
+    if plan.source is not target or target.translator is None or writes_back(plan):
+        return target
+    return target if plan.copies else type(target.__name__, (target,), {"__module__": __name__})
+
+
+def writes_back(plan: Plan) -> bool:
+    """Whether a program in a language of its own is written in that language line by line.
+
+    Its lines are spelled anew where their blocks have changed, so no pass may change text, or
+    positions.
+    """
+    same = plan.source is plan.target and getattr(plan.source.translator, "writes", False)
+    return same and not plan.text_passes and _stamp_of(plan) is None
+
+
+def _spells_out(plan: Plan) -> bool:
+    """Whether a program is written whole in the language of its target.
+
+    What changes text is for programs of words, and so are stamps where the language has no comment
+    that may stand behind the end.
+    """
+    speller = getattr(plan.target.translator, "speller", None)
+    if speller is None or plan.text_passes or plan.source is plan.target:
+        return False
+    return bool(speller.comment) or _stamp_of(plan) is None
+
+
+def _stamp_of(plan: Plan) -> Stamp | None:
+    return stamp_of(plan.passes, plan.context, plan.words)
