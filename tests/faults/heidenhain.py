@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "heidenhain: a tool is fetched and changed at once",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        'if not (line.startswith("TOOL DEF ") and after.startswith(called)):',
+        "if True:",
+        "tests/test_corpus.py::test_case[dialects/across/tools-named-before-m6]",
+    ),
+    Mutation(
         "spelled out: a place of the machine is known in one program alone",
         "gcxform/proof/spelled_out.py",
         'ends[open_ & (frames[0] == "") & (frames[1] == ""), ALONG] = True',

@@ -64,6 +64,7 @@ class Lines(gx.Speller):
 
     def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
         """Return lines with cycles for the moves of holes; what they are in inches is not read."""
+        lines = [*_fetched_ahead(lines)]
         return lines if self.inch else Drilling(lines).gathered()
 
     def numbered(self, lines: list[str]) -> list[str]:
@@ -339,6 +340,20 @@ class Lines(gx.Speller):
 
 
 UNTURNED = gx.put_before("offsets")
+
+
+def _fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
+    """Yield lines without a TOOL DEF behind which TOOL CALL takes the tool at once."""
+    after = ""
+    found = []
+    for line, of in reversed(lines):
+        called = f"TOOL CALL {line.removeprefix('TOOL DEF ')} Z"
+        if not (line.startswith("TOOL DEF ") and after.startswith(called)):
+            found.append((line, of))
+        after = after if line.startswith(";") else line
+    yield from reversed(found)
+
+
 ONE_UNIT = gx.put_before("metric")
 NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
 ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))
