@@ -85,6 +85,11 @@ def test_a_tool_that_waits_is_not_in_the_spindle(tmp_path: Path) -> None:
     ]
 
 
+def test_a_speed_that_only_the_machine_knows(tmp_path: Path) -> None:
+    program = "G21 G90 G54 T3 M6\nS#681 M3\nG1 X9. F90.\nS500\nM30\n"
+    assert info(tmp_path, program, dialect="fanuc")["tools"]["T3"]["speed"] == [500, 500]
+
+
 def test_features(tmp_path: Path) -> None:
     program = f"{HEAD}G91 G20 G55\nG54\nX0 Y0 Z0 A0 G18 G90\nG3 X1 I.5 K0 Y1 F9\nG1 A3\nG81\nM2\n"
     features = info(tmp_path, program)["features"]

@@ -168,6 +168,12 @@ def finding(code: str, line: int, hint: str = "") -> Diagnostic:
     return Diagnostic(code, f"as {code} says", Location("-", line), hint=hint)
 
 
+def test_a_loop_without_an_end_is_not_left_out() -> None:
+    """The loop around it would run to the limit of steps."""
+    assert visit([finding("GX224", 2)]).left_out == set()
+    assert visit([finding("GX215", 2)]).left_out == {2}
+
+
 def test_a_value_that_ends_nothing_is_not_asked_for() -> None:
     asks = finding("GX207", 1, "say start = { X = ... } in [input]")
     found = visit([asks], [asks])

@@ -139,6 +139,25 @@ def test_what_is_written_is_read_and_compared(right, wrong, why, monkeypatch):
         said(text)
 
 
+BEHIND = [("Z7", "Z8"), ("SUPA G0 Z0 D0", "SUPA G0 Z5 D0"), ("X9", "X9 Z9")]
+
+
+@pytest.mark.parametrize(("right", "wrong"), BEHIND)
+def test_behind_a_move_in_the_machine_places_are_compared(right, wrong, monkeypatch):
+    """G54 is known and the length is not: until Z is named again, one of both knows where it is."""
+    lines = Lines.lines
+
+    def mistaken(self, block):
+        return [line.replace(right, wrong) for line in lines(self, block)]
+
+    text = "T3 M6\nG43 H3\nG0 X1. Y2. Z3.\nG53 G0 Z0.\nX9.\nZ7."
+    reading = replace(READING, tools={}, work_offsets={"G54": {"Z": -5.0}})
+    said(text, reading=reading)
+    monkeypatch.setattr(Lines, "lines", mistaken)
+    with pytest.raises(gx.GcxformError):
+        said(text, reading=reading)
+
+
 REFUSED = [
     ("T3 M6\nG43 H4\nG0 X1. Y1. Z1.", "the length of another tool than the one in the spindle"),
     ("G0 X0. Y0.\nG3 X0. Y0. Z-3. I5. J0. P3 F50.", "TURN= of a full circle"),

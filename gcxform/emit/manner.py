@@ -21,6 +21,7 @@ from gcxform.toolpath.path import Toolpath
 from gcxform.values import dataclass
 
 WORDS = ("changed", "programmed", "all")
+NOISE = 1e-9  # mm; what positions may be off because they are computed in binary
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,7 @@ class Manner:
 
     def rounding(self, inch: bool) -> float:
         """Return the largest distance (mm) of a formatted position from the exact one."""
-        return float(np.sqrt(sum((self.step(a, inch) / 2) ** 2 for a in "XYZ")))
+        return float(np.sqrt(sum((self.step(a, inch) / 2) ** 2 for a in "XYZ"))) + NOISE
 
 
 @dataclass(slots=True)

@@ -93,11 +93,10 @@ def _differences(
     cuts = a.kind != Kind.RAPID
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
-    ends = _same(a.end, b.end, near[:, None])
-    ends[(frames[0] != frames[1]) & ~counts, ALONG] = True  # no word of these rows is along it
-    open_ = np.isnan(a.end[:, ALONG]) != np.isnan(b.end[:, ALONG])
-    ends[open_ & (frames[0] == "") & (frames[1] == ""), ALONG] = True  # `_places` compares these
-    yield from _first(~ends.all(axis=1), "an end")
+    same = _same(a.end, b.end, near[:, None])
+    same[(frames[0] != frames[1]) & ~counts, ALONG] = True  # no word of these rows is along it
+    same[_led_by_the_machine(a, b, dialect, one, other), ALONG] = True
+    yield from _first(~same.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
     yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
@@ -168,6 +167,27 @@ def _places(
         if _words(one[line]) != _words(other[there]):
             yield row, "a place in the machine"
             return
+
+
+def _led_by_the_machine(
+    a: Toolpath, b: Toolpath, dialect: type[Dialect], one: list[bytes], other: list[bytes]
+) -> list[int]:
+    """Return the rows in which one path alone knows where the tool stands along itself.
+
+    A move in the machine has led there in both (`_places` compares them), under a length that
+    nobody has said in one of them alone. It stands there until a block names that axis again.
+    """
+    found: list[int] = []
+    open_ = np.isnan(a.end[:, ALONG]) != np.isnan(b.end[:, ALONG])
+    both = {row for row, _ in _machine(a, dialect)} & {row for row, _ in _machine(b, dialect)}
+    for row in sorted(both) if open_.any() else ():
+        led, named = row, a.axes[ALONG] in _words(one[a.source[row]])
+        while named and led < len(a) and open_[led]:
+            found.append(led)
+            led += 1
+            words = (one[a.source[led]], other[b.source[led]]) if led < len(a) else ()
+            named = not any(a.axes[ALONG] in _words(each) for each in words)
+    return found
 
 
 def _machine(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, int]]:

@@ -99,6 +99,20 @@ MUTATIONS = (
         "tests/test_missing.py",
     ),
     Mutation(
+        "check: a loop without an end is left out",
+        "gcxform/cli/program/missing.py",
+        "stays = each.code in LOST | ENDLESS",
+        "stays = each.code in LOST",
+        "tests/test_missing.py",
+    ),
+    Mutation(
+        "info: what another word is worth is the speed",
+        "gcxform/cli/program/tools.py",
+        'if address == "S"]',
+        'if address != "S"]',
+        "tests/test_info.py",
+    ),
+    Mutation(
         "check: the first of two values on trial counts",
         "gcxform/cli/program/missing.py",
         "min(counts, key=lambda k: counts[k])",

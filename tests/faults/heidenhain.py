@@ -52,13 +52,6 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/tools-named-before-m6]",
     ),
     Mutation(
-        "spelled out: a place of the machine is known in one program alone",
-        "gcxform/proof/spelled_out.py",
-        'ends[open_ & (frames[0] == "") & (frames[1] == ""), ALONG] = True',
-        "pass",
-        "tests/test_corpus.py::test_case[dialects/across/place-without-a-length]",
-    ),
-    Mutation(
         "heidenhain: M5 beside a move is said behind it",
         "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
         "BEHIND = frozenset((0, 1, 2, 30))",
@@ -495,7 +488,7 @@ MUTATIONS = (
     Mutation(
         "klartext: what is written for a TNC is not compared",
         SPELLED,
-        'yield from _first(~ends.all(axis=1), "an end")',
+        'yield from _first(~same.all(axis=1), "an end")',
         "pass",
         f"{WRITTEN}::test_what_is_written_for_a_tnc_is_read_and_compared",
     ),

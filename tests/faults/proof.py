@@ -48,6 +48,13 @@ MUTATIONS = (
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
+        "proof: the rounding leaves nothing for what is computed in binary",
+        "gcxform/emit/manner.py",
+        'for a in "XYZ"))) + NOISE',
+        'for a in "XYZ")))',
+        "tests/test_corpus.py::test_case[dialects/across/half-steps]",
+    ),
+    Mutation(
         "proof: a tool length that the source may have let go of is the target's",
         "gcxform/proof/known_positions.py",
         "wrong = open_here[owner] & ~open_there & np.isfinite(trace.before.end[owner, 2])",

@@ -500,6 +500,13 @@ MUTATIONS = (
         f"{COMPARED}[SUPA G0 Z0 D0-SUPA G0 Z5 D0-a place in the machine]",
     ),
     Mutation(
+        "written in a language: a place is known in both behind a move in the machine",
+        SPELLED,
+        "        while named and led < len(a) and open_[led]:\n",
+        "        while False and led < len(a) and open_[led]:\n",
+        "tests/test_corpus.py::test_case[dialects/across/machine-place-length-open]",
+    ),
+    Mutation(
         "siemens: DC goes the longer way",
         PLACE,
         "return up if up * 2 < TURN else up - TURN",

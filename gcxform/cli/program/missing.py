@@ -38,6 +38,8 @@ ON_TRIAL: Final[Mapping[Question, Any]] = {
 """Values on trial where 0 would not be one: mm, less than contours are wide; 0 has no unit."""
 LOST: Final = frozenset({"GX207", "GX208", "GX311", "GX314", "GX506"})
 """Findings about a position that is not known; where the start does not help, it was lost."""
+ENDLESS: Final = frozenset({"GX224"})
+"""A loop without an end: left out, it would make the loop around it run to the limit of steps."""
 WHERE_LOST: Final[tuple[Question, ...]] = (
     ("tool", ANY, "length"),
     ("home", ANY, "X"),
@@ -159,7 +161,8 @@ class Visit:
             if left_out and each.code not in STATELESS:
                 continue
             self._add((each.code, each.message), each, behind)
-            if each.code not in LOST and each.where and each.where.file == self.source.name:
+            stays = each.code in LOST | ENDLESS
+            if not stays and each.where and each.where.file == self.source.name:
                 found.left_out |= {each.where.line} - {0}
         self._answer(new)
         return bool(new) or found.left_out != left_out

@@ -103,8 +103,9 @@ class Tools:
         if self.spindle.see(event):
             self.uses.setdefault(self.spindle.loaded, Use())
         elif event.what == "S":
-            speed = dict(event.values)["S"]
-            self.uses.setdefault(self.spindle.loaded, Use()).speed.add([speed])
+            # the value of an expression of which only the machine knows the worth is not there
+            speeds = [value for address, value in event.values if address == "S"]
+            self.uses.setdefault(self.spindle.loaded, Use()).speed.add(speeds)
 
     def _rows(self, path: Toolpath, seconds: Floats, first: int, last: int) -> None:
         """Take some rows of a path into account."""
