@@ -89,13 +89,14 @@ def _differences(
     yield from _first(counts & ~_same(was, is_, 0.0).all(axis=1), LENGTH)
     for name in SAME:
         yield from _first(getattr(a, name) != getattr(b, name), name)
-    yield from _first(_lost(a, b), "what is known of where axes stand")
+    alone = (frames[0] != frames[1]) & ~counts  # no word of these rows is along the tool
+    alone[_led_by_the_machine(a, b, dialect, one, other)] = True
+    yield from _first(_lost(a, b, alone), "what is known of where axes stand")
     cuts = a.kind != Kind.RAPID
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
     same = _same(a.end, b.end, near[:, None])
-    same[(frames[0] != frames[1]) & ~counts, ALONG] = True  # no word of these rows is along it
-    same[_led_by_the_machine(a, b, dialect, one, other), ALONG] = True
+    same[alone, ALONG] = True
     yield from _first(~same.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
     yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")
@@ -110,14 +111,16 @@ def _differences(
         yield len(b), "events are lost, or there are more"
 
 
-def _lost(a: Toolpath, b: Toolpath) -> Any:
+def _lost(a: Toolpath, b: Toolpath, alone: Any = False) -> Any:
     """Return before which moves it is known in one path alone where an axis stands (n,).
 
     Along a tool whose length nobody has said, one is where that begins to count or ends to, or
     another does: by G49 and G43 about a move in the machine, which is said without them where it
-    counts all along; or by the change of the tool and not by G43 behind it.
+    counts all along; or by the change of the tool and not by G43 behind it. `alone` (n,) are moves
+    behind which it may be known in one path alone where the tool stands along itself.
     """
     differ = np.isnan(a.start) != np.isnan(b.start)
+    differ[1:, ALONG] &= ~np.broadcast_to(alone, len(differ))[:-1]
     for path in (a, b):
         open_ = [f.origin[ALONG] if np.isnan(f.tool[ALONG]) else "" for f in path.frames]
         counts = np.array([open_.index(name) for name in open_], np.int64)[path.frame]
