@@ -38,7 +38,8 @@ class PointRule:
 
     required         a distance without a point counts in increments of the control, or in units:
                      a setting
-    feed_required    an F without a point counts in a unit of the control, which must be configured
+    feed_required    an F without a point counts in a unit of the control, which must be configured;
+                     one that is computed counts as one with a point
     feed_steps       steps in mm/min and inch/min of such an F, by the system in which it counts
     calculator_words words to which the control can be set to add a point where they have none
     dwell            seconds for one unit of each word that G4 takes

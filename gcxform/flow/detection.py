@@ -36,6 +36,7 @@ READS = rb"#[ \t]*(?:40(?:0[123567]|14)|4109|4120|500[123])(?![0-9])"
 """Variables of macro B that say modes of the block before, and where the axes stand."""
 ALARM = rb"#[ \t]*3000(?![0-9])"
 """The variable with which a program of macro B stops the control for good."""
+WHILE = rb"WHILE|WH[ \t]*\["
 SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
     "o-words": (
         (b"O", rb"O[ \t]*[0-9<#]"),
@@ -48,7 +49,7 @@ SIGNS: dict[str, tuple[tuple[bytes, bytes], ...]] = {
     "macro-b": (
         (b"M", CALLS),
         (b"O", rb"GOTO"),
-        (b"[", rb"WHILE"),
+        (b"[", WHILE),
         (b"[", rb"IF[ \t]*\["),
         (b"G", WITH_VALUES),
         (b"#", NULL),
@@ -66,7 +67,7 @@ PROOFS = {
         re.IGNORECASE | re.MULTILINE,
     ),
     "macro-b": re.compile(
-        rb"|".join((CALLS, rb"GOTO|WHILE|IF[ \t]*\[", WITH_VALUES, NULL, READS, ALARM)),
+        rb"|".join((CALLS, rb"GOTO|IF[ \t]*\[", WHILE, WITH_VALUES, NULL, READS, ALARM)),
         re.IGNORECASE,
     ),
 }

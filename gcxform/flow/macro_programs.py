@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from gcxform.diagnostics import InputError
 from gcxform.flow.execution import MISSING
 from gcxform.flow.listing import Listing, bare
 from gcxform.flow.macro_words import Loop, MacroWords, statement_of
@@ -22,6 +23,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.tree import BLANKS, Block, Statement
 
 LOOPS = ("1", "2", "3")
+OPEN = " that is open here"
 PACKED = 10_000  # P of old controls: a count, and four digits of a program number
 
 
@@ -89,9 +91,21 @@ class MacroPrograms(MacroWords):
             open_.append((line, name))
         elif statement.kind == "end":
             if not open_ or open_[-1][1] != name:
-                raise self.refusal("GX223", f"END {name} ends no loop that is open here")
+                raise self._unread() or self.refusal("GX223", f"END {name} ends no loop{OPEN}")
             first = open_.pop()[0]
             self.loops[first] = self.loops[line] = Loop(first, line)
+
+    def _unread(self) -> InputError | None:
+        """Return what is wrong with the last line before this one that is no block.
+
+        It may have begun the loop that seems to be missing.
+        """
+        for line in range(self.line - 1, max(self.bounds, default=0) - 1, -1):
+            error = self.listing.block(line).error
+            if error is not None:
+                message = f"this is not {self.dialect.name} G-code: {error[1]}"
+                return self.listing.refusal(line, "GX101", message, "", (error[0] - 1, error[0]))
+        return None
 
     def _refuse_open(self, open_: list[tuple[int, str]]) -> None:
         """Refuse a loop that is not closed in its program."""

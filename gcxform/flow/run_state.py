@@ -192,8 +192,7 @@ class RunState:
     def spelled(self, word: Word, values: list[float]) -> list[str]:
         """Return values of a word of the line as they are written."""
         if self.dialect.point_rule.feed_required and word.address == "F":
-            message = "F is computed: its unit depends on the control"
-            raise self.refusal("GX205", message, place=(word.start, word.end))
+            return [decimal(value) for value in values]
         if self.dialect.point_rule.required and word.address in DISTANCES:
             return self._on_increment(word, values)
         return [decimal(value).removesuffix(".") for value in values]

@@ -164,13 +164,13 @@ class Pointless:
     ) -> Floats:
         """Return feeds in units; those whose unit is not known are refused."""
         odd = present & (decimals < 0) & (value != 0)
+        if self.rule.feed_required:
+            odd &= decimals != COMPUTED
         if not odd.any():
             return value
         computed = odd & (decimals == COMPUTED)
         counts = self._feed_counts(mode, inch)
         unknown = odd & (np.isnan(counts) | (computed & (counts != 1.0)))
-        if self.rule.feed_required:
-            unknown |= computed
         for line in np.flatnonzero(unknown)[: Findings.enough].tolist():
             message = "F has no decimal point: its unit depends on the control"
             written = not computed[line]

@@ -12,6 +12,35 @@ def _macro(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 RENUMBER = "plugins/gcxform_plugins/passes/renumber.py"
 MUTATIONS = (
     _macro(
+        "WH is no WHILE",
+        "gcxform/flow/detection.py",
+        'WHILE = rb"WHILE|WH[ \\t]*\\["',
+        'WHILE = rb"WHILE"',
+        "structure/fanuc-while-short",
+    ),
+    _macro(
+        "a loop whose line is not read is none",
+        "gcxform/flow/macro_programs.py",
+        "raise self._unread() or self.refusal",
+        "raise self.refusal",
+        "flow/loop-not-read",
+    ),
+    _macro(
+        "a setting scales a feed that is computed",
+        "gcxform/modal/numbers_without_point.py",
+        "odd &= decimals != COMPUTED",
+        "pass",
+        "flow/haas-feed-alone",
+    ),
+    _macro(
+        "a feed that is computed is written without its point",
+        "gcxform/flow/run_state.py",
+        "            return [decimal(value) for value in values]\n        if self.dialect",
+        '            return [decimal(value).removesuffix(".") for value in values]\n'
+        "        if self.dialect",
+        "flow/haas-feed",
+    ),
+    _macro(
         "an assignment beside a call is passed over",
         "gcxform/flow/macros.py",
         "if stand:",

@@ -72,6 +72,7 @@ CYCLES |= {number: replace(CYCLES[number], takes="QL", open_words="P") for numbe
 OWN = v.MACRO_B.machine
 ARITHMETIC = replace(
     v.with_logic(v.MACRO_B, bits=True),
+    whole=v.MACRO_B.whole.replace("F", ""),
     machine=replace(
         OWN,
         outputs=(*OWN.outputs, range(10000, 11000)),
@@ -148,6 +149,7 @@ class Haas(Fanuc):
     )
     point_rule = replace(
         Fanuc.point_rule,
+        # «G01 X1.5 Y3.7 F20.» is F#4 behind #4=20: Haas, on-line manual, Address Substitution
         feed_required=True,
         feed_steps={"IS-B": (1000.0, 10_000.0)},
         calculator_words="XYZABCEFIJKUW",
