@@ -82,7 +82,7 @@ class CodeWords:
                 what = f"{name}: it goes to a point of another kind there"
                 self.draft.refuse(word, what, WAY_HOME)
             return  # G53 stands before the axis words
-        if code is not None and code.act == MACHINE and self.key.role is not Role.VERBATIM:
+        if code is not None and code.act == MACHINE and self.key.role not in self._machine_roles:
             return  # its words are of the work offset
         if said != name:
             text = like(text, said)
@@ -91,6 +91,12 @@ class CodeWords:
             if what:
                 self._refuse(word, name, what)
         self.draft.literal(lead, text)
+
+    @property
+    def _machine_roles(self) -> tuple[Role, ...]:
+        """In which pieces a code of the machine stays; with no axis another control needs none."""
+        crossing = self.source is not self.target
+        return (Role.VERBATIM,) if crossing else (Role.VERBATIM, Role.NONE)
 
     def _refuse(self, word: Word, name: str, what: str) -> NoReturn:
         """Refuse a G code, with the pass, or the option, that leads out."""

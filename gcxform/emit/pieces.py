@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gcxform.dialect.cycle_rule import TAPPING
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
 from gcxform.emit.own_blocks import own_blocks
@@ -79,7 +80,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     path, cycle = task.path, task.read.modes.cycle != CYCLE_OFF
     count = np.bincount(path.block, minlength=task.read.live)
     special = _special(task, taps)
-    expanded = cycle & ~special & ~taps.lines & _in_moves(task)
+    expanded = cycle & ~special & ~taps.lines & ~_stores_taps(task, count) & _in_moves(task)
     opens, closes = around(expanded)
     expanded |= _of_nurbs(task)
     before, behind = own_blocks(task, count)
@@ -137,6 +138,14 @@ def _in_moves(task: Task) -> Flags | bool:
     if task.manner.expands or not foreign:
         return task.manner.expands
     return np.isin(task.read.modes.cycle, list(foreign))
+
+
+def _stores_taps(task: Task, count: Ints) -> Flags:
+    """Return the lines (live,) at which a cycle of tapping is in force and nothing moves.
+
+    They may say where the taps behind them go (K0), which stay cycles.
+    """
+    return np.asarray(np.isin(task.read.modes.cycle, list(TAPPING)) & (count == 0))
 
 
 def _of_nurbs(task: Task) -> Flags:

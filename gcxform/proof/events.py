@@ -30,6 +30,9 @@ from gcxform.proof.zeros import zeros_differ
 from gcxform.toolpath.path import Event, Form, Kind, Toolpath
 from gcxform.values import dataclass
 
+SWITCHED = frozenset({"S", "M3", "M4", "M5", "M7", "M8", "M9"})
+"""What spindle and coolant are told."""
+
 
 def _machine_last(events: list[Event], machine: str, home: set[int]) -> list[Event]:
     """Return events in which a way home of these lines is said behind the others of its block."""
@@ -44,6 +47,11 @@ def _machine_last(events: list[Event], machine: str, home: set[int]) -> list[Eve
 def _beside(one: Event, other: Event) -> bool:
     """Whether two events are of one block, and before the same row, the other of a G code."""
     return (one.line, one.row) == (other.line, other.row) and other.what.startswith("G")
+
+
+def _switches_beside(one: Event, other: Event) -> bool:
+    """Whether an event of spindle or coolant is of the block of another, before the same row."""
+    return one.what in SWITCHED and (one.line, one.row) == (other.line, other.row)
 
 
 @dataclass(frozen=True)
@@ -68,6 +76,7 @@ class EventProof:
         told = self._without_feeds_in_machine(told, path) if saying.feeds_in_work else told
         if not (saying.crosses or saying.drop or saying.m_codes):
             return told
+        told = self._without_bare_machine(told, path) if saying.crosses else told
         alone = {e.what for e in told if saying.lengthens(e.what)}
         alone |= {e.what for e in told if saying.ends_length_alone(e.what)}
         if alone:  # they have blocks of their own, before their lines
@@ -96,6 +105,13 @@ class EventProof:
         fed = {*path.source[(path.form == Form.MACHINE) & (path.kind == Kind.LINE)].tolist()}
         machine = {name for name, code in codes.items() if code.act == MACHINE}
         return tuple(e for e in told if not (e.what in machine and e.line in fed))
+
+    def _without_bare_machine(self, told: tuple[Event, ...], path: Toolpath) -> tuple[Event, ...]:
+        """Return events without codes of the machine that move nothing: they name no axis."""
+        codes = self.context.source.codes
+        moved = {*path.source[path.form == Form.MACHINE].tolist()}
+        machine = {name for name, code in codes.items() if code.act == MACHINE}
+        return tuple(e for e in told if not (e.what in machine and e.line not in moved))
 
     def _until_end(self, told: tuple[Event, ...]) -> tuple[Event, ...]:
         """Return events without further ends behind one at which the target alone stops."""
@@ -174,6 +190,24 @@ class EventProof:
         here = self.context.source.offset_rule.g10_l20 == "here"
         return act == "preset" or (act == "set-work" and here and ("L", 20.0) in event.values)
 
+    def _frames_first(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
+        """Return events in which codes of coordinates stand before spindle and coolant beside them.
+
+        Controls differ in what they do first. With no move between, neither counts for the other.
+        """
+        found: list[Event] = []
+        for event in events:
+            at = len(found)
+            while at and self._sets_frame(event) and _switches_beside(found[at - 1], event):
+                at -= 1
+            found.insert(at, event)
+        return tuple(found)
+
+    def _sets_frame(self, event: Event) -> bool:
+        dialects = self.context.source, self.context.target
+        codes = (dialect.codes.get(event.what) for dialect in dialects)
+        return any(code is not None and code.effect is Effect.FRAME for code in codes)
+
     def wrong(
         self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
     ) -> Iterator[Wrong]:
@@ -181,6 +215,8 @@ class EventProof:
         saying = self.context.saying
         if any(saying.ends_length_alone(event.what) for event in old):  # first in its block
             new = tuple(sorted(new, key=lambda e: (e.line, not saying.ends_length_alone(e.what))))
+        if saying.crosses:
+            old, new = self._frames_first(old), self._frames_first(new)
         both = min(len(old), len(new))
         lines = trace.lines_of(np.array([event.line for event in new[:both]], np.int64))
         written = np.array([event.row for event in new[:both]], np.int64)

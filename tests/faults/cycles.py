@@ -203,6 +203,13 @@ MUTATIONS = (
         for name, old, new in TOGETHER
     ),
     Mutation(
+        "cycles: what a tap stores is gone with its cycle",
+        "gcxform/emit/pieces.py",
+        " & ~_stores_taps(task, count)",
+        "",
+        "tests/test_corpus.py::test_case[tied/tap-stored]",
+    ),
+    Mutation(
         "cycles: a hole above R",
         "gcxform/modal/cycles/checks.py",
         "stretch.bottom > stretch.clearance",

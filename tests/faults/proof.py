@@ -48,6 +48,27 @@ MUTATIONS = (
     _verifier("moves of nobody are ignored", "if len(trace.owner) and int(trace.owner.min()) < 0:"),
     _verifier("nothing is undone", "path = step.undo(path, self.context)", "pass"),
     Mutation(
+        "writing: a code of the machine without axes is gone on its own control",
+        "gcxform/emit/codewords.py",
+        "else (Role.VERBATIM, Role.NONE)",
+        "else (Role.VERBATIM,)",
+        "tests/test_corpus.py::test_case[metric/machine-without-axes]",
+    ),
+    Mutation(
+        "proof: in what order a block tells spindle and coordinates counts",
+        "gcxform/proof/events.py",
+        "            while at and self._sets_frame(event) and",
+        "            while False and self._sets_frame(event) and",
+        "tests/test_corpus.py::test_case[dialects/across/frame-beside-switch]",
+    ),
+    Mutation(
+        "proof: a code of the machine without axes is told",
+        "gcxform/proof/events.py",
+        "told = self._without_bare_machine(told, path) if saying.crosses else told",
+        "pass",
+        "tests/test_corpus.py::test_case[dialects/across/frame-beside-switch]",
+    ),
+    Mutation(
         "proof: the rounding leaves nothing for what is computed in binary",
         "gcxform/emit/manner.py",
         'for a in "XYZ"))) + NOISE',

@@ -236,19 +236,18 @@ def _target(track: Track, line: int) -> dict[str, float]:
 
 def _in_machine(track: Track, line: int) -> Own:
     """G53: to a point in the coordinates of the machine, without any offset."""
-    if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
-        message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
-        track.findings.add(line, "GX213", message, hint=PLACE)
-    kind = int(track.modes.motion[line])
+    kind, words = int(track.modes.motion[line]), track.words_on(line)
     if kind not in (Kind.RAPID, Kind.LINE):
         track.findings.add(line, "GX213", "G53 needs G0 or G1", hint=CLEAR)
         kind = Kind.RAPID
+    if not words:
+        return _rows(track, line, Form.MACHINE, [])
+    if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
+        message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
+        track.findings.add(line, "GX213", message, hint=PLACE)
     if kind == Kind.LINE and track.dialect.motion_rule.g53_is_rapid:
         message = "G53 under G1: this control moves in rapid whatever is in force"
         track.findings.add(line, "GX213", message, hint="write G0 in this block")
-    words = track.words_on(line)
-    if not words:
-        return _rows(track, line, Form.MACHINE, [])
     end = track.state.position.tolist()
     for axis, value in words.items():
         k = track.axes.index(axis)
