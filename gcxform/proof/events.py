@@ -205,8 +205,9 @@ class EventProof:
 
     def _sets_frame(self, event: Event) -> bool:
         dialects = self.context.source, self.context.target
-        codes = (dialect.codes.get(event.what) for dialect in dialects)
-        return any(code is not None and code.effect is Effect.FRAME for code in codes)
+        codes = [dialect.codes.get(event.what) for dialect in dialects]
+        moves = any(code is not None and code.act in (HOME, MACHINE) for code in codes)
+        return not moves and any(code and code.effect is Effect.FRAME for code in codes)
 
     def wrong(
         self, old: tuple[Event, ...], new: tuple[Event, ...], trace: Trace, budget: float
