@@ -31,6 +31,7 @@ ANSWERS: dict[str, Any] = {
     "for-end": "included",
     "subroutine-locals": "shared",
     "motion-at-start": "G1",
+    "section-repeats": "further",
     "tool-change-by": "M6",
 }
 

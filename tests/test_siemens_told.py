@@ -71,3 +71,41 @@ def test_the_motion_at_the_start_is_said(motion, kind):
     text = b"G710 G17 G90 G94 F100\nX5\n"
     path = gx.read(text, SIEMENS, control={"motion-at-start": motion}).path
     assert [*path.kind] == [kind]
+
+
+SECTION = "G0 X0\nROW: G1 X=IC(1)\n"
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ("REPEATB ROW", "of the ways of REPEAT"),
+        ("REPEAT ROW ROW", "of the ways of REPEAT"),
+        ("REPEAT ROW X2", "of the ways of REPEAT"),
+        ("REPEAT ROW P=0", "REPEAT for 0 times"),
+        ("REPEAT ROW P=1.5", "a whole number"),
+        ("REPEAT UNSEEN", "no UNSEEN before this"),
+        ("REPEAT LATER\nLATER: X5", "no LATER before this"),
+        ("ROW: X7\nREPEAT ROW", "or several"),
+        ("IF 1\nREPEAT ROW\nENDIF", "left or entered on the way"),
+        ("IF R1 GOTOF NEXT\nNEXT:\nREPEAT ROW", "left or entered on the way"),
+        ("ENDLABEL:\nREPEAT ROW", "left or entered on the way"),
+        ("REPEAT ROW\nREPEAT ROW", "left or entered on the way"),
+        ("REPEAT ROW P=R7", "the value of R7"),
+    ],
+)
+def test_other_ways_to_repeat_a_section_are_refused(said, why):
+    with pytest.raises(gx.InputError, match=why):
+        ends(f"R1=1\n{SECTION}{said}\n", control={"section-repeats": "further"})
+
+
+@pytest.mark.parametrize(("counts", "passes"), [("further", 4), ("in-all", 3)])
+def test_a_section_is_repeated_as_often_as_the_machine_file_says(counts, passes):
+    found = ends(f"{SECTION}REPEAT ROW P=3\nX50\n", control={"section-repeats": counts})
+    assert [end[0] for end in found] == [*range(passes + 1), 50.0]
+
+
+def test_it_is_repeated_in_each_pass_of_a_loop_around_it():
+    text = f"R1=0\nWHILE R1<2\nR1=R1+1\n{SECTION}REPEAT ROW\nENDWHILE\n"
+    found = ends(text, control={"section-repeats": "further"})
+    assert [end[0] for end in found] == [0.0, 1.0, 2.0] * 2

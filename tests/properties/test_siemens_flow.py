@@ -19,6 +19,7 @@ from gcxform.plugin.registry import default_registry
 SIEMENS = default_registry().dialect("siemens")
 KINDS = {"RAPID": "0", "LINE": "1"}
 NEAR = 2e-6
+CONTROL = {"section-repeats": "further"}
 FILES = {
     "ALONG": "PROC ALONG(REAL TX=1, INT TY, VAR REAL SUM)\nG1 X=TX Y=TY\nSUM=SUM+TX\nM17\n",
     "TWICE": "PROC TWICE(INT MN)\nDEF INT K_\nFOR K_=1 TO MN+1\nY=2*K_\nENDFOR\nRET\n",
@@ -154,7 +155,7 @@ class Builder:
     def looped(self, depth):
         if not self.counters:
             return
-        put, counter, kind = self.lines.append, self.counters.pop(), self.draw.randrange(4)
+        put, counter, kind = self.lines.append, self.counters.pop(), self.draw.randrange(5)
         self.shifted = {*"XYZ"} if self.turned else {*self.shifted}
         if kind == 0:
             put(f"FOR {counter}={self.pick('1', '2')} TO {self.pick('0', '2', '3')}")
@@ -172,6 +173,12 @@ class Builder:
             self.section(depth)
             put(f"{counter}={counter}+1")
             put(f"UNTIL {counter}>=2")
+        elif kind == 3:
+            self.labels += 1
+            put(f"LAB{self.labels}: {counter}={counter}+1")
+            for _ in range(self.draw.randint(1, 3)):
+                self.statement(0)  # no jump, which may leave it
+            put(f"REPEAT LAB{self.labels}{self.pick('', ' P=1', f' P={counter}+3-{counter}')}")
         else:
             self.labels += 1
             label = f"LAB{self.labels}"
@@ -257,7 +264,7 @@ def check(seed, folder):
     text = Builder(seed).text()
     there = moves(text, FILES)
     try:
-        path = gx.read(text.encode(), SIEMENS, subprograms=(folder,)).path
+        path = gx.read(text.encode(), SIEMENS, subprograms=(folder,), control=CONTROL).path
     except gx.InputError as error:  # a draw with a step behind a frame: a setting decides on it
         if "SD42440" not in error.diagnostics[0].message:
             raise

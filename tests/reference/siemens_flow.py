@@ -65,6 +65,7 @@ class Machine:
         self.lines = text.splitlines()
         self.files = files or {}
         self.r, self.names, self.types = {}, {}, {}
+        self.left = {}  # how often each REPEAT of a label goes back yet
         self.at = [0.0, 0.0, 0.0]  # outside
         self.matrix, self.shift = UNITS, [0.0, 0.0, 0.0]
         self.motion, self.steps = "0", False
@@ -181,7 +182,8 @@ class Machine:
         ends, loops, open_ = {}, {}, []
         for k, code in enumerate(codes):
             word = code.split("(")[0].split()[0].upper() if code else ""
-            if word in ("WHILE", "FOR", "LOOP", "REPEAT") or (word == "IF" and "GOTO" not in code):
+            opens = word in ("WHILE", "FOR", "LOOP") or code.upper() == "REPEAT"
+            if opens or (word == "IF" and "GOTO" not in code):
                 open_.append(k)
             elif word == "ELSE":
                 ends[open_.pop()] = k
@@ -206,6 +208,8 @@ class Machine:
             return self.counted(rest, word, k, ends, loops, codes)
         if word in ("ENDWHILE", "ENDLOOP"):
             return loops[k]
+        if word == "REPEAT" and rest:
+            return self.again(rest, k, labels)
         if word == "UNTIL":
             return k + 1 if self.value(rest) else loops[k]
         if word == "CASE":
@@ -213,6 +217,16 @@ class Machine:
         if word not in ("", "LOOP", "REPEAT", "ENDIF"):
             self.one(code, word)
         return k + 1
+
+    def again(self, rest, k, labels):
+        """Execute REPEAT of a label, of which P counts the further times; return the next line."""
+        label, _, times = rest.partition("P=")
+        left = self.left.pop(k, None)
+        left = (self.value(times) if times else 1) if left is None else left
+        if not left:
+            return k + 1
+        self.left[k] = left - 1
+        return labels[label.strip().upper()]
 
     def counted(self, rest, word, k, ends, loops, codes):
         """Execute FOR or ENDFOR; return the next line."""

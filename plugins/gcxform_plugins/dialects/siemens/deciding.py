@@ -7,16 +7,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import cached_property
-from typing import Any
+from typing import Any, NoReturn
 
 from lark import Token, Tree
 
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.cells import LOST, Value, converted
 from gcxform_plugins.dialects.siemens.expressions import PARAMETER, lost
-from gcxform_plugins.dialects.siemens.nodes import Node, rule_of
-from gcxform_plugins.dialects.siemens.structure import Part, StructureError
+from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, span_of
+from gcxform_plugins.dialects.siemens.structure import HEAD, Part, StructureError, code
 from gcxform_plugins.dialects.siemens.variables import Variables
+
+REPEATS = "section-repeats"
+REPEAT_HINT = (
+    f'{REPEATS} = "further" in [control], or {REPEATS} = "in-all" in [control], as it counts P'
+)
+PLAINLY = "let the CAM write plain moves in its place"
+MOST = 9999  # times that one REPEAT may ask for
 
 
 class Deciding(Variables):
@@ -25,11 +32,13 @@ class Deciding(Variables):
     kept_until   lines up to this one are kept: only the machine decides on them, `kept_why`
     perhaps      those that are kept may be executed, and nothing else is done among them
     decides      something has decided where to go on;  loops_on: a loop may go on at its end
+    repeating    of each REPEAT of a label that is under way, how often it goes back yet
     """
 
     def __init__(self, lines: list[str], file: str, dialect: Any, reading: Any) -> None:
         super().__init__(lines, file, dialect, reading)
         self.counting: dict[int, float] = {}
+        self.repeating: dict[int, float] = {}
         self.kept_until, self.kept_why = 0, ""
         self.decides = self.loops_on = self.perhaps = False
         self.flow: Mapping[str, Callable[[Node], None]] = {
@@ -171,9 +180,49 @@ class Deciding(Variables):
             self._go(part.first)
 
     def _repeat(self, node: Node) -> None:
-        """Take REPEAT of UNTIL; sections that are repeated are not followed."""
-        if len(node.children) > 1:
-            self._elsewhere("how often REPEAT executes a section is known from no manual")
+        """Take REPEAT of UNTIL, and go back to the label of another as often as its P says."""
+        if len(node.children) == 1:
+            return
+        counts = self.reading.control.get(REPEATS)
+        if counts is None:
+            self._elsewhere("how often REPEAT executes a section is said by no manual", REPEAT_HINT)
+        first = self._section(node)
+        if self.line not in self.repeating:
+            self.repeating[self.line] = self._times(node) - (counts != "further")
+        if self.repeating[self.line] > 0:
+            self.repeating[self.line] -= 1
+            self._go(first)
+        else:
+            del self.repeating[self.line]
+
+    def _section(self, node: Node) -> int:
+        """Return the first line of what a REPEAT repeats: up to its own, with nothing that leaves.
+
+        Raises InputError, StructureError.
+        """
+        word, name, *others = node.children
+        text = code(self.lines[self.line]).rstrip()
+        only = HEAD.match(text)
+        alone = only is not None and (only["word"] or "").upper() == "REPEAT"
+        if str(word).upper() != "REPEAT" or not isinstance(name, Token) or not alone:
+            self._elsewhere("of the ways of REPEAT the one with a label before it is followed")
+        if len(text) > span_of(node)[1] or any(isinstance(each, Token) for each in others):
+            self._elsewhere("of the ways of REPEAT the one with a label before it is followed")
+        (first, *more) = (*self.structure.places(str(name)), len(self.lines))
+        if first >= self.line or len(more) > 1:
+            self._elsewhere(f"there is no {name} before this REPEAT, or several")
+        if not self.structure.is_whole(first, self.line):
+            self._elsewhere("a section that is repeated, and left or entered on the way")
+        return first
+
+    def _times(self, node: Node) -> float:
+        """Return what P of a REPEAT says. Raises InputError, NoValueError."""
+        nodes: list[Any] = node.children
+        said = next((each for each in nodes if rule_of(each) == "times"), None)
+        number = 1.0 if said is None else self._whole(said.children[-1])
+        if not 1 <= number <= MOST:
+            self.refuse(f"REPEAT for {number:g} times")
+        return number
 
     def _jump(self, way: str, destination: Any) -> None:
         """Go to a label or a block number."""
@@ -210,10 +259,10 @@ class Deciding(Variables):
                 return
 
     def _whole(self, node: Any) -> float:
-        """Return a number that CASE compares. Raises NoValueError for what it would round."""
+        """Return a number that is whole. Raises NoValueError for what would be rounded."""
         value = self.worth.number(node)
         if value != int(value):
-            raise v.NoValueError("CASE of a number that is not whole", "write ROUND(...)")
+            raise v.NoValueError("this has to be a whole number", "write ROUND(...)")
         return value
 
     def _return(self, node: Node) -> None:
@@ -254,12 +303,11 @@ class Deciding(Variables):
         """Forget what lines may change that are executed again."""
         raise NotImplementedError
 
-    def _elsewhere(self, why: str) -> None:
+    def _elsewhere(self, why: str, hint: str = PLAINLY) -> NoReturn:
         """Keep all that follows, and all lines that may be executed once more."""
-        if not self.reading.stays:
-            self.refuse(why)
-        self.keep_rest(why)
-        self.refuse(why)
+        if self.reading.stays:
+            self.keep_rest(why)
+        self.refuse(why, None, hint)
 
     def keep_rest(self, why: str) -> None:
         """Keep all that follows; and lines before, where it may lead back to them.

@@ -93,7 +93,8 @@ kept as it stands, with all that is lost behind it.
 | GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
 | CASE OF DEFAULT | by whole numbers, others are refused; on without a DEFAULT | PM |
 | a variable set and read in a word of one block | refused | [K] |
-| GOTOS, REPEAT of a label, RET with a label | refused | [K] |
+| REPEAT of a label before it | by `[control] section-repeats`, what P counts | [K] |
+| REPEAT of two labels, REPEATB, ENDLABEL, GOTOS, RET with a label | refused | [K] |
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
 | other `$` variables, names that nothing defines | only the control knows them | |
 | R parameters and such names in `parameters` of `[input]` | what the user says, until set | |
@@ -183,6 +184,7 @@ class Siemens(gx.Dialect):
         gx.Setting("motion-at-start", "siemens: motion before any code (MD20150)", ("G0", "G1")),
         gx.Setting("tool-change-by", "siemens: what changes a tool (MD22550)", ("T", "M6")),
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
+        gx.Setting("section-repeats", "siemens: what P of REPEAT counts", ("further", "in-all")),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )
     block_rule = gx.BlockRule(m_order_chosen=True)

@@ -27,6 +27,12 @@ BEYOND = re.compile(
 )
 """What goes on where nobody knows, or repeats lines: jumps to what is computed among them."""
 ENDS_HERE = re.compile(r"(?<![A-Z0-9_])(?:RET|M0*(?:2|17|30))(?![A-Z0-9_])", re.IGNORECASE)
+LEAVES = re.compile(
+    r"(?<![A-Z0-9_])(?:(?:GOTO[BFCS]?|CASE|RET|ENDLABEL|M0*(?:2|17|30))(?![A-Z0-9_])"
+    r"|REPEATB?[ \t]+[A-Z_]|CALL[ \t]+BLOCK)",
+    re.IGNORECASE,
+)
+"""What leaves a section that is repeated, or ends it in another place."""
 BACK = re.compile(
     r"(?<![A-Z0-9_])(?:GOTO|GOTO[BCS]|REPEATB?|RET|UNTIL|WHILE|FOR|LOOP)(?![A-Z0-9_])",
     re.IGNORECASE,
@@ -105,6 +111,13 @@ class Structure:
         """Return the first lines of the structures that a line stands in; heads stand outside."""
         return frozenset(part.first for part in self.parts if part.first < line <= part.last)
 
+    def is_whole(self, first: int, stop: int) -> bool:
+        """Whether lines up to another are executed from the first to the last, and no other way."""
+        if self.around(first) != self.around(stop):
+            return False
+        section = [code(line) for line in self.lines[first:stop]]
+        return not any(LEAVES.search(line) for line in section)
+
     def target(self, way: str, name: str, line: int) -> int | None:
         """Return the line that a jump goes to, None where there is none. Raises StructureError."""
         ahead, back = range(line + 1, self.stop), range(line, self.first - 1, -1)
@@ -115,6 +128,10 @@ class Structure:
                         raise StructureError(line, f"the jump to {name} leads into a structure")
                     return at
         return None
+
+    def places(self, name: str) -> list[int]:
+        """Return the lines of a label."""
+        return [line for line in range(self.first, self.stop) if self._is(line, name)]
 
     def _is(self, line: int, name: str) -> bool:
         found = HEAD.match(code(self.lines[line]))
