@@ -321,6 +321,13 @@ MUTATIONS = (
     ),
     # feed
     Mutation(
+        "feed: a mode that the target has not is written before it is refused",
+        "plugins/gcxform_plugins/passes/feed.py",
+        "        return False\n\n    def _check(self,",
+        "        return True\n\n    def _check(self,",
+        "tests/test_corpus.py::test_case[feed/not-resolved-unneeded]",
+    ),
+    Mutation(
         "feed: an arc is as long as its chord",
         "plugins/gcxform_plugins/passes/feed.py",
         "size[arcs] = self._arc_lengths(arcs)",

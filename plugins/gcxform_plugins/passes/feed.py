@@ -58,8 +58,9 @@ class FeedPass(gx.Pass):
         rows = np.flatnonzero(other & (path.kind != gx.Kind.RAPID))
         still = np.zeros(len(path), np.bool_)
         feed = np.where(other, np.nan, path.feed)
+        if not self._is_there(path, rows, context.target):
+            return path
         if len(rows):
-            self._check_code(path, rows, context.target)
             moves = _Moves(path, rows)
             self._check(path, moves, context)
             way = moves.lengths()
@@ -80,13 +81,19 @@ class FeedPass(gx.Pass):
 
     # --- what is refused ---
 
-    def _check_code(self, path: gx.Toolpath, rows: Ints, target: type[gx.Dialect]) -> None:
-        """Refuse a mode that the target does not have, or of which it is not known what F says."""
+    def _is_there(self, path: gx.Toolpath, rows: Ints, target: type[gx.Dialect]) -> bool:
+        """Whether the target has the mode; refuse moves in one that it has not.
+
+        Until one comes the mode stays as it is: before its place there is nothing to refuse.
+        """
         name = "G93" if self.mode == "inverse-time" else "G94"
         code = target.codes.get(name)
-        if code is None or code.reason:
+        if code is not None and not code.reason:
+            return True
+        if len(rows):
             why = code.reason if code else "it has no such code"
             self._refuse(path, rows, f"feeds in {name} on {target.name}: {why}")
+        return False
 
     def _check(self, path: gx.Toolpath, moves: _Moves, context: gx.PassContext) -> None:
         """Raise InputError for moves whose time or length is not known."""
