@@ -171,6 +171,11 @@ class Learned:
         self.row += 1
         return step.said(numbers)
 
+    def enter(self) -> bool:
+        """Begin where the translator is, if it is in a state in which lines are learnt."""
+        self.node = self.node or self._entered()
+        return self.node is not None
+
     def stretch(self, ahead: Ahead, lines: range, shapes: Mapping[str, Learnt]) -> list[str]:
         """Return the blocks of lines that are known and have one each, up to the first that is not.
 

@@ -38,7 +38,8 @@ class Shape:
 
     `template` is the block of a plain line, to be filled in with its numbers; nothing if it is not.
     `slots` says what can be learnt of such lines; None if nothing. Those that are `steady` do what
-    their state says or is not known yet, and nothing beside.
+    their state says or is not known yet, and nothing beside. One that `computes` may become a line
+    that is learnt.
     """
 
     parts: tuple[Part, ...]
@@ -46,6 +47,7 @@ class Shape:
     template: str
     routine: bool = False
     slots: Slots | None = None
+    computes: bool = False
     steady: bool = field(init=False)
 
     def __post_init__(self) -> None:
@@ -107,6 +109,11 @@ class LineShapes(ABC):
         """
         del part
         return ""
+
+    def may_compile(self, parts: Sequence[Part]) -> bool:
+        """Whether lines with these parts may be asked what they are in plain words."""
+        del parts
+        return False
 
     def items(self, line: int) -> tuple[Item, ...]:
         """Return the items of a line. Raises InputError for what the grammar does not accept."""
@@ -177,7 +184,7 @@ class LineShapes(ABC):
         pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
         if not rest or not pairs or slots != [*range(len(numbers))]:
             routine = not said and self.routine([part.item(numbers) for part in rest], text)
-            return Shape(parts, comments, "", routine)
+            return Shape(parts, comments, "", routine, computes=self.may_compile(rest))
         template = ""
         if self.plain([part.item(numbers) for part in rest]):
             words = [part.names[0].replace("%", "%%") + "%s" * len(part.slots) for part in rest]

@@ -101,6 +101,16 @@ class Translator(LineShapes):
         """Return where axes are, to be changed in its place; None for what is not known."""
         return {}
 
+    def in_plain_words(self, text: str) -> tuple[str, Callable[[], None]] | None:
+        """Return a line that `computes` in plain words, and what does all else that it does.
+
+        It is asked where lines are learnt, and may not hang on more than variables, nor change more
+        of the translator, and nothing before what it returned is called. None for lines that have
+        to be translated.
+        """
+        del text
+        return None
+
     def several(self) -> list[str]:
         """Return the blocks of a run of lines from `line` on, one for each; nothing without one.
 
@@ -259,6 +269,9 @@ class Translator(LineShapes):
         if learned is None:
             return self._translated(shape, numbers)
         if shape.slots is None:
+            known = self._computed(shape, learned) if shape.computes else None
+            if known is not None:
+                return known
             learned.leave()
             return self._translated(shape, numbers)
         found = learned.blocks(shape, shape.slots, numbers)
@@ -271,6 +284,22 @@ class Translator(LineShapes):
         blocks = [*self.blocks([item for item in items if item.kind != COMMENT])]
         if tried is not None:
             learned.confirm(tried, blocks, numbers)
+        return _with_comments(blocks, shape.comments)
+
+    def _computed(self, shape: Shape, learned: Learned) -> Iterable[str] | None:
+        """Return the blocks of a line that computes, as they were learnt; None without these."""
+        if not learned.enter() or (found := self.in_plain_words(self.lines[self.line])) is None:
+            return None
+        text, done = found
+        blocks: list[str] | None = []
+        if text.strip():
+            plain, numbers = self.shape(self.line, text)
+            if plain.slots is None or plain.comments:
+                return None
+            blocks = learned.blocks(plain, plain.slots, numbers)
+        if blocks is None:
+            return None
+        done()
         return _with_comments(blocks, shape.comments)
 
     def learnt_text(self, text: str, blocks: Callable[[Sequence[Item]], list[str]]) -> list[str]:

@@ -9,7 +9,7 @@ has a point, for there are words that have none.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from itertools import accumulate
 from typing import Any
 
@@ -42,10 +42,24 @@ class TreeShapes:
             tree = self._trees[text] = self._parse(text)
         return tree
 
+    def shape(self, text: str) -> tuple[Hashable, list[str]]:
+        """Return the shape of a line, and its numbers; None for it where they have none in common.
+
+        Trees of lines of one shape have the same nodes, and texts beside the numbers. Raises
+        UnexpectedInput.
+        """
+        key, numbers = _key(text)
+        if key not in self._fixed:
+            self.parse(text)
+        fixed = self._fixed.get(key)
+        return None if fixed is None else (key, *[numbers[k] for k in fixed]), numbers
+
+    def spans(self, text: str) -> list[tuple[int, int]]:
+        """Return where the numbers of a line stand: columns from 0."""
+        return [found.span() for found in NUMBER.finditer(text)]
+
     def _parse(self, text: str) -> Tree[Token]:
-        pieces = NUMBER.split(text)
-        numbers = pieces[1::2]
-        key = f"{SLOT.join(pieces[::2])}{''.join(map(_form, numbers))}"
+        key, numbers = _key(text)
         fixed = self._fixed.get(key, ())
         if fixed is None:
             return self.grammar.parse(text)
@@ -72,6 +86,13 @@ class TreeShapes:
             self._makers.clear()
         self._makers[key, *[numbers[k] for k in fixed]] = maker, [len(n) for n in numbers]
         return tree
+
+
+def _key(text: str) -> tuple[str, list[str]]:
+    """Return a line without its numbers, and these."""
+    pieces = NUMBER.split(text)
+    numbers = pieces[1::2]
+    return f"{SLOT.join(pieces[::2])}{''.join(map(_form, numbers))}", numbers
 
 
 def _form(number: str) -> str:

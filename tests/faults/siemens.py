@@ -37,6 +37,7 @@ LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
 LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
 ANGLES = "plugins/gcxform_plugins/dialects/siemens/angles.py"
+COMPILING = "plugins/gcxform_plugins/dialects/siemens/compiling.py"
 VARIABLES = "plugins/gcxform_plugins/dialects/siemens/variables.py"
 LINES_BESIDE = "tests/test_siemens_lines.py"
 STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
@@ -750,6 +751,34 @@ MUTATIONS = (
         '"GOTOB": (back,)',
         '"GOTOB": (ahead, back)',
         f"{CASES}[dialects/siemens/jump-back]",
+    ),
+    Mutation(
+        "siemens: a compiled line sets nothing",
+        "gcxform/flow/translation.py",
+        "        done()\n",
+        "",
+        f"{LEARNT}::test_programs_are_translated_alike",
+    ),
+    Mutation(
+        "siemens: a compiled line reads what was before it",
+        COMPILING,
+        "if sets and read and len(words) + len(sets) > 1:",
+        "if False:",
+        f"{LEARNT}::test_a_compiled_line_does_its_assignments_in_turn",
+    ),
+    Mutation(
+        "siemens: a sign is lost where a line is compiled",
+        COMPILING,
+        "-inner(numbers) if minus else inner(numbers)",
+        "inner(numbers)",
+        f"{LEARNT}::test_programs_are_translated_alike",
+    ),
+    Mutation(
+        "siemens: what a user has named is a word in compiled lines",
+        COMPILING,
+        "(name in WORDS and name not in self.own)",
+        "name in WORDS",
+        f"{LEARNT}::test_what_a_user_gives_a_value_is_a_variable_in_lines_that_are_compiled_too",
     ),
     Mutation(
         "siemens: P of REPEAT counts all passes",

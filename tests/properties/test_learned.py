@@ -33,6 +33,10 @@ SIEMENS = (
     *("; note {n}", "X{a} ; to {n}", 'MSG("{n}")', "STOPRE", "MCALL CYCLE81(5,0,2,-{r})", "MCALL"),
     *("G94", "G95", "G93", "G710", "G700", "AP={f} RP={r}", "G111 X{a} Y{b}", "G110 X{a}", "SOFT"),
     *("SUPA G0 Z{a} D0", "X{a} X{b}", "G1 G2", "Q{a}", "IF R1>{a} GOTOF E{k}", "$AC_X={a}", "RET"),
+    *("R{k}=-(R1*2+{r})/4", "X={r}+R1*2 Y=-R2", "R{k}=SIN({f})*R2", "X=R2/R3", "R1={a} R2=R1"),
+    *("G1 X=R1 R2={r}", "N{n} X=R1 ; c {n}", "Z=AC(R1)", "X=IC(R2*2)", "R{k}=R{k}+1", "F=R1*10"),
+    *("R0{k}={a}", "X=R1 Y={a}", "R{k}={n}", "X=MAXVAL(R1,{r})", "R{k}=ROUND(R1)", "r1=r2 ; {a}"),
+    *("R1=R2 R1={r}", "R1={r} M8", "X=R1 M8", "X=R1EX2", "R1=2EX1", "N{n} R1={r}", "/R1={r}"),
     *("X{a}M8", "n{n} g1 x{a}", "TRAORI", "TRAFOOF", "X=R9", "R9=$A_IN[1]", "CYCLE800({a})", "G60"),
 )
 LOOPS = (("FOR R{k}=1 TO {k}", "ENDFOR"), ("WHILE R1<{k}", "ENDWHILE"), ("IF R1>={a}", "ENDIF"))
@@ -130,6 +134,18 @@ def test_where_axes_are_is_known_behind_lines_that_were_learnt(
     blocks = found(text, "siemens", READINGS[2 if "CR" in text else 0])[0]
     assert isinstance(blocks, list)
     assert blocks[-2].startswith(block)
+
+
+def test_what_a_user_gives_a_value_is_a_variable_in_lines_that_are_compiled_too() -> None:
+    reading = Reading(units="mm", parameters={"<F>": 3.0})
+    text = "\n".join(["G90 G17 G1 F9 X1 Y1", "R1=2", *(" F=30 ", "F=R1*10") * 9, "M30", ""])
+    assert not [block for block in found(text, "siemens", reading)[0] if "F20" in block]
+
+
+def test_a_compiled_line_does_its_assignments_in_turn() -> None:
+    lines = [line for k in range(9) for line in (f"R1={k} R2=R1", f"X{k}.5", "X=R2")]
+    text = "\n".join(["G90 G17 G1 F9 X1 Y1", *lines, "M30", ""])
+    assert found(text, "siemens", READINGS[0])[0][2:20:2] == [f"X{k}" for k in range(9)]
 
 
 class Hidden(default_registry().dialect("siemens").translator):  # type: ignore[misc]

@@ -6,7 +6,7 @@ A line with a flow word says where to go on (`deciding.py`), and is no block.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 from lark import Tree
@@ -14,11 +14,13 @@ from lark.exceptions import UnexpectedInput
 
 import gcxform as gx
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.compiling import MOST, Compiled, Compiler
 from gcxform_plugins.dialects.siemens.deciding import Deciding
 from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, span_of
 from gcxform_plugins.dialects.siemens.structure import StructureError, code
 from gcxform_plugins.dialects.siemens.variables import AXES
 
+COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
 BRACKETS = str.maketrans("()", "[]")
@@ -41,11 +43,43 @@ class Computing(Deciding):
         self.standing: list[tuple[int, str]] = []
         self.unsaid: set[str] = set()
         self.unknown_cycle = ""
+        self._compiled: dict[Hashable, Compiled | None] = {}
+        self._compiler = Compiler(self.worth, self.given)
         self.fed, self.feed_mode = True, "94"
         if reading.stays and reading.feed is None:
             self.loses.add("F")
 
     # --- lines ---
+
+    def may_compile(self, parts: Sequence[Any]) -> bool:
+        """Whether lines with these parts may be compiled."""
+        return {part.kind for part in parts} <= COMPILED and any(map(self._may_compute, parts))
+
+    def _may_compute(self, part: Any) -> bool:
+        kind, name = str(part.kind), str(part.names[0])
+        return kind == "expression" or (kind == "indexed" and name == "R")
+
+    def in_plain_words(self, text: str) -> tuple[str, Callable[[], None]] | None:
+        """Return a line in plain words, and what sets its R parameters; None for other lines."""
+        try:
+            shape, numbers = self.grammar_of_expressions.shape(text)
+        except UnexpectedInput:
+            return None
+        if shape is None:
+            return None
+        if shape not in self._compiled:
+            if len(self._compiled) >= MOST:
+                self._compiled.clear()
+            tree, spans = self.tree_of(text), self.grammar_of_expressions.spans(text)
+            self._compiled[shape] = self._compiler.compiled(tree, text, spans)
+        line = self._compiled[shape]
+        if line is None:
+            return None
+        try:
+            plain, given = line.text(numbers), line.given(numbers)
+        except (v.NoValueError, OverflowError):
+            return None
+        return plain, lambda: self.r.update(given)
 
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line. Raises InputError."""
