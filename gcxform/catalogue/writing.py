@@ -153,7 +153,8 @@ CODES: dict[str, tuple[str, str]] = {
         "say, and a block that names only some axes moves from there. Program all linear axes "
         "between that code and this block, where the way is clear. If the code moves nothing on "
         "that machine, a tool change by hand for one, `inert` in [output] says so. So it is with "
-        "a tool length that only one of them lets go of behind G28: say it again.",
+        "a tool length that only one of them lets go of behind G28: say it again; and with one "
+        "that moves Z by itself: let Z go there alone behind it.",
     ),
     "GX510": (
         "The path is farther off than the budget",

@@ -38,6 +38,8 @@ WHAT = {
 }
 IN_PLACE = (Form.NURBS, Form.PASSES, Form.TILTED)
 """Forms that begin where the tool stands, and have no word for it."""
+Z = 2
+"""The column of the axis that a tool length moves by itself on some controls."""
 HINTS = {
     Form.CYCLE: put_before("cycles"),
     Form.SPLINE: put_before("segment", options="chord-error=2um"),
@@ -93,6 +95,7 @@ class Copying:
         depending.refuse_shared(self.lines)
         self._refuse_unknown()
         self._refuse_polar()
+        self._refuse_moved_before(pieces)
         self._refuse_perhaps(stated, pieces)
 
     def _refuse_extrusion(self) -> None:
@@ -174,6 +177,23 @@ class Copying:
             message = "the block would be written anew, in radius and angle (G16)"
             where = self.task.location(int(self.path.block[rows[0]]))
             raise InputError.one("GX506", message, where, put_before("offsets"))
+
+    def _refuse_moved_before(self, pieces: Pieces) -> None:
+        """Refuse to move Z beside others where a tool length has moved it before, by itself.
+
+        Its block does not name Z there, or is a cycle that begins at the level where Z stands.
+        """
+        first = pieces.expanded_line[self.path.block] & (self.path.nth == 0)
+        named = self.positions.programmed[:, Z] & ~first
+        stands = np.isnan(self.path.start[:, Z]) & np.isfinite(self.path.end[:, Z])
+        rows = np.flatnonzero(self.positions.write[:, Z] & ~named & stands & self.path.is_free)
+        manner = self.task.manner
+        there, here = (each.tool_rule.length_may_move for each in (manner.target, manner.source))
+        if here and not there and len(rows):
+            message = "Z is where another tool length has moved it, and would only go there now"
+            hint = "program Z alone behind the code of the length"
+            where = self.task.location(int(self.path.block[rows[0]]))
+            raise InputError.one("GX509", message, where, hint)
 
     def _skipped(self) -> None:
         """Copy the blocks that the control skips; another control, which might not, gets none."""

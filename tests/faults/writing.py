@@ -27,6 +27,20 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[volumetric/tool-table-from-axes]",
     ),
     Mutation(
+        "writing: Z goes on a diagonal where another length had moved it before",
+        "gcxform/emit/copying.py",
+        "        self._refuse_moved_before(pieces)\n",
+        "",
+        "tests/test_corpus.py::test_case[dialects/across/length-moves-alone]",
+    ),
+    Mutation(
+        "writing: a cycle begins on a diagonal where another length had moved Z before",
+        "gcxform/emit/copying.py",
+        "self.positions.programmed[:, Z] & ~first",
+        "self.positions.programmed[:, Z]",
+        "tests/test_corpus.py::test_case[dialects/across/length-moves-alone-cycle]",
+    ),
+    Mutation(
         "writing: a run of copied lines goes on over a line that is not copied",
         "gcxform/emit/render.py",
         " | (is_copy[1:] & (np.diff(source) != 1))",
