@@ -119,12 +119,14 @@ class Arithmetic:
         return named and (key.startswith("_") or not self.owns(key))
 
     def hangs_on(self, key: Key) -> str:
-        """Return on what of a program the value of a parameter depends: "", "units" or "place"."""
+        """Return on what of a program the value of a parameter depends, as `Unknown` has it."""
         known = self.machine
         if self.owns(key) or among(key, known.signals):
             return ""
         if isinstance(key, str) and key.split("[")[0] in known.names.signals:
             return ""
+        if key in known.motion:
+            return "motion"
         return "units" if among(key, known.measured) else "place"
 
     def outlives(self, key: Key) -> bool:
@@ -301,6 +303,7 @@ RS274 = Arithmetic(
             given=("_ini[", "_hal["),
             hidden=frozenset({"_line", "_call_level", "_remap_level"}),
         ),
+        motion=frozenset({"_motion_mode"}),
         measured=(range(5061, 5070), range(5161, 5400), range(5401, 5411)),
         highest=5601,
     ),

@@ -22,6 +22,7 @@ class MachineParameters:
     names      what is known of those that have names
     measured   those that do in any mode and place, in one unit: offsets, results of probes
     highest    the highest number; a higher one is an error
+    motion     those that say which code of motion, or which canned cycle, is in force
     null       the parameter without a value (`gcxform/dialect/null.py`); None: there is none
     """
 
@@ -35,6 +36,7 @@ class MachineParameters:
     names: NamedParameters = field(default_factory=lambda: NamedParameters())
     measured: tuple[range, ...] = ()
     highest: int = 2**31
+    motion: frozenset[int | str] = frozenset()
     null: int | None = None
 
     def tool_of(self, number: int) -> int:
@@ -83,6 +85,7 @@ FANUC = MachineParameters(
         range(7001, 8000),
         range(10001, 20001),
     ),
+    motion=frozenset({4001, 4009, 4201, 4209}),
     null=0,
 )
 """Fanuc 16i to 32i, as in manuals of macro B."""

@@ -18,7 +18,7 @@ from gcxform.emit.tapping import Taps
 from gcxform.modal.columns import fill
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.numbers_without_point import hint_of_rounding
-from gcxform.system.arrays import Flags, Ints
+from gcxform.system.arrays import Flags, Ints, Small
 from gcxform.system.distinct import distinct, one_of, union
 from gcxform.toolpath.angles import TURN
 from gcxform.toolpath.path import Form
@@ -46,6 +46,12 @@ HINTS = {
     Form.BLIND: "program its axes in G90 before, so that it is known where they stand",
     Form.PROBE: "leave the pass out that changes its coordinates: what it finds counts in them",
 }
+
+
+def _motion_before(pieces: Pieces, stated: Stated, entry: int, live: int) -> Small:
+    """Return the numbers of the codes of motion in force before each line (live,)."""
+    known = np.append(np.int8(entry), stated.motion.after)
+    return np.asarray(known[np.searchsorted(pieces.line, np.arange(live))])
 
 
 class Copying:
@@ -76,7 +82,8 @@ class Copying:
         stands, converted, self.exact = self._standing(old_count, pieces, stated)
         self._refuse_extrusion()
         self._refuse_changed(stands, pieces, stated)
-        depending = Depending(task, positions, believed, self.same, self.exact)
+        motion = _motion_before(pieces, stated, believed.motion, live)
+        depending = Depending(task, positions, believed, self.same, self.exact, motion)
         depending.check()
         if task.manner.crossing:
             self.lines &= self._nothing_to_say()

@@ -15,19 +15,28 @@ from gcxform.emit.positions import Positions
 from gcxform.emit.same_rows import EXACT, SameRows
 from gcxform.modal.line_notes import BY_WAY, Unknown
 from gcxform.modal.meaning.meaning import FRAMING
-from gcxform.system.arrays import Flags
+from gcxform.modal.state import CYCLE_OFF
+from gcxform.system.arrays import Flags, Small
 
 STORES = "store-home"
+PLACED = ("place", "motion")
 
 
 class Depending:
     """Looks at the blocks of a window whose effect depends on modes or places.
 
     `exact` (rows,): after the row the control stands exactly where the source program put it.
+    `motion` (live,): the number of the code of motion that is in force before the line.
     """
 
     def __init__(
-        self, task: Task, positions: Positions, believed: Believed, same: SameRows, exact: Flags
+        self,
+        task: Task,
+        positions: Positions,
+        believed: Believed,
+        same: SameRows,
+        exact: Flags,
+        motion: Small,
     ) -> None:
         self.task = task
         self.path, self.original = task.path, task.read.path
@@ -35,6 +44,7 @@ class Depending:
         self.believed = believed
         self.same = same
         self.exact = exact
+        self.motion = motion
 
     def check(self) -> None:
         """Raise InputError for the first block that would do something else."""
@@ -125,12 +135,24 @@ class Depending:
             return True
         if each.hangs_on and now.feed_mode[line] != old.feed_mode[line]:
             return True
-        said = self._probes() if each.hangs_on == "units" else each.hangs_on == "place"
+        said = self._probes() if each.hangs_on == "units" else each.hangs_on in PLACED
         if said and self._shifts_go():
             return True
-        if each.hangs_on != "place":
+        if each.hangs_on not in PLACED:
             return False
+        if each.hangs_on == "motion" and self._other_motion(line):
+            return True
         return not bool(self.same.modes()[line]) or self._stands_elsewhere(line)
+
+    def _other_motion(self, line: int) -> bool:
+        """Whether another code of motion is in force before a line than in the source, or no cycle.
+
+        A cycle is in force behind its line, and goes with the code that ends it in another one.
+        """
+        read = self.task.read
+        was = read.modes.motion[line - 1] if line else read.before.groups["motion"]
+        drills = read.modes.cycle[max(line - 1, 0)] != CYCLE_OFF
+        return bool(self.motion[line] != was) or (self.task.manner.expands and bool(drills))
 
     def _refuse_calls(self) -> None:
         """Refuse calls of what is not there, if they would find another control than in the source.

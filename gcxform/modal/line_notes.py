@@ -24,7 +24,8 @@ class Unknown(NamedTuple):
     """A piece of a line of the window, from 0, that only the machine can compute.
 
     `text` has no blanks. `hangs_on` is what of the program its value depends on besides parameters:
-    "" for nothing, "units", or "place" for the places of the axes and all modes. `BY_WAY`: nothing
+    "" for nothing, "units", "place" for the places of the axes and modes, "motion" for these and
+    the code of motion or the canned cycle in force. `BY_WAY`: nothing
     is computed; it is by how much a block goes. `rounded`: its value is known but for the increment
     to which the control rounds it.
     """

@@ -274,7 +274,7 @@ MUTATIONS = (
     _macro(
         "a place is read where its coordinates are folded away",
         "gcxform/emit/depending.py",
-        'else each.hangs_on == "place"',
+        "else each.hangs_on in PLACED",
         "else False",
         "offsets/place-read",
     ),

@@ -41,6 +41,27 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/length-moves-alone-cycle]",
     ),
     Mutation(
+        "writing: which code of motion is in force may be read where it is another one",
+        "gcxform/emit/depending.py",
+        'if each.hangs_on == "motion" and self._other_motion(line):',
+        "if False:",
+        "tests/test_corpus.py::test_case[segment/motion-read]",
+    ),
+    Mutation(
+        "writing: which code of motion was in force is not asked",
+        "gcxform/emit/depending.py",
+        "return bool(self.motion[line] != was) or",
+        "return True or",
+        "tests/test_corpus.py::test_case[segment/motion-kept]",
+    ),
+    Mutation(
+        "writing: which canned cycle is in force may be read where there is none",
+        "gcxform/emit/depending.py",
+        "(self.task.manner.expands and bool(drills))",
+        "False",
+        "tests/test_corpus.py::test_case[dialects/fanuc/cycle-read]",
+    ),
+    Mutation(
         "writing: a run of copied lines goes on over a line that is not copied",
         "gcxform/emit/render.py",
         " | (is_copy[1:] & (np.diff(source) != 1))",

@@ -25,7 +25,7 @@ FREE = "FST"
 """Words that no move needs to be known of, besides axes."""
 LENGTHS = frozenset({"length", "length-negative", "length-add"})
 SETS_ZERO = "set-work"
-STRENGTH = ("", "units", "place")
+STRENGTH = ("", "units", "place", "motion")
 
 
 def bare_text(text: str) -> str:
@@ -65,7 +65,8 @@ def note_prints(lines: Lines) -> None:
 def hangs_on(node: Any, evaluator: Evaluator) -> str:
     """Return on what of a program an expression depends besides its parameters.
 
-    "": on nothing; "units": on the unit in force; "place": on where the axes stand, or on modes.
+    "": on nothing; "units": on the unit in force; "place": on where the axes stand, or on modes;
+    "motion": on the code of motion in force, or the canned cycle, as well.
     """
     found = [_of_parameter(each, evaluator) for each in _parameters(node)]
     return max(found, key=STRENGTH.index, default="")
@@ -83,4 +84,4 @@ def _of_parameter(node: Tree[Token], evaluator: Evaluator) -> str:
     try:
         return evaluator.arithmetic.hangs_on(evaluator.key(node))
     except NoValueError:
-        return "place"  # which parameter it is only the machine knows
+        return STRENGTH[-1]  # which parameter it is only the machine knows

@@ -23,7 +23,7 @@ FIRST = 0
 PRINTS = re.compile(r"\([ \t]*(?:DEBUG|PRINT|LOG)[ \t]*,", re.IGNORECASE)
 NAMED = re.compile(r"#<[^<>]*>|#[0-9]")
 PARAMETER = re.compile(r"#[ \t]*(<[^<>]*>|[0-9]+)?")
-STRENGTH = ("", "units", "place")
+STRENGTH = ("", "units", "place", "motion")
 
 
 def prints_values(comment: str) -> bool:
