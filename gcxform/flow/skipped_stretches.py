@@ -1,7 +1,8 @@
 """What a stretch of blocks changes that a jump may leave out, as far as that can be carried.
 
 Axes that it moves are lost behind it, and the feed. Modes that it changes must be programmed before
-a block depends on them. Frames, tools, cutter compensation and cycles are refused.
+a block depends on them. Frames, tools, cutter compensation and cycles are refused, and M codes of
+the machine's own, unless its file says that they are inert.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from gcxform.values import dataclass
 CARRIED = ("motion", "plane", "distance", "arc-distance")
 """Groups that may be changed, if they are programmed again before they count."""
 UNMINDED = frozenset({"spindle"})
+MACRO = "an M code that may run a macro"
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,28 +49,36 @@ def effect_of(run: RunState, table: MeaningTable, shapes: Ints, lines: Ints) -> 
     axes = run.dialect.axes
     for shape in distinct(shapes).tolist():
         meaning = table.meanings[shape]
-        if why := _not_carried(meaning):
+        inert = meaning.lost_by <= run.reading.inert_m
+        if why := _not_carried(meaning, inert):
             run.line = int(lines[np.argmax(shapes == shape)])
             message = f"{why} in a block of which only the machine knows whether it is executed"
-            raise run.refusal("GX220", message)
+            raise run.refusal("GX220", message, _way(meaning) if why == MACRO else "")
         letters |= {*meaning.axes} | ({"F"} if "F" in meaning.slots else set())
         own = any(act.name in OWN_MOVES for act in meaning.acts)
-        if meaning.loses_position or (own and not meaning.axes):
+        if (meaning.loses_position and not inert) or (own and not meaning.axes):
             letters |= {*axes}
     return Effect("".join(sorted(letters)))
 
 
-def _not_carried(meaning: Meaning) -> str:
-    """Return what of a block cannot be carried on as lost."""
+def _not_carried(meaning: Meaning, inert: bool) -> str:
+    """Return what of a block cannot be carried on as lost; `inert`: its own M codes do nothing."""
     acts = [act.code for act in meaning.acts if act.name not in OWN_MOVES]
     cycles = [code for code in meaning.groups.values() if NUMBER.get(code) in CYCLES]
     if acts or cycles:
         return (acts + cycles)[0]
     if meaning.changes_tool or "T" in meaning.slots:
         return "a tool"
-    if meaning.runs_macro:
-        return "an M code that may run a macro"
+    if meaning.runs_macro and not inert:
+        return MACRO
     return "an end" if meaning.ends else ""
+
+
+def _way(meaning: Meaning) -> str:
+    """Return what the machine file can say of the M codes of a block."""
+    numbers = ", ".join(map(str, sorted(meaning.lost_by - {-1})))
+    said = f"inert-m = [{numbers}] in [control] of the machine file"
+    return f"if it runs none: {said}, beside those that it has" if numbers else ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -668,6 +668,20 @@ MUTATIONS = (
         CASES,
     ),
     Mutation(
+        "branches: any M code may stand in what is left out",
+        "gcxform/flow/skipped_stretches.py",
+        "if meaning.runs_macro and not inert:",
+        "if False:",
+        "tests/test_corpus.py::test_case[flow/m-in-branch]",
+    ),
+    Mutation(
+        "branches: an M code that is inert loses positions where it may be left out",
+        "gcxform/flow/skipped_stretches.py",
+        "if (meaning.loses_position and not inert)",
+        "if meaning.loses_position",
+        "tests/test_corpus.py::test_case[flow/inert-m-in-branch]",
+    ),
+    Mutation(
         "branches: what kept text reads may be left out",
         "gcxform/flow/run_state.py",
         "if self.keeps and not reads <= self.settled.needed:",
