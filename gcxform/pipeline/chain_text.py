@@ -16,6 +16,7 @@ from gcxform.plugin.registry import Registry
 CHAIN: Final = "-x"
 
 _TOKEN = re.compile(r"""(?P<bar>\|)|(?P<word>(?:[^\s|"']|"[^"]*"|'[^']*')+)|(?P<quote>["'])""")
+_NAME = re.compile(r"[a-z]+(?:-[a-z]+)*")
 _QUOTED = re.compile(r""""([^"]*)"|'([^']*)'""")
 
 
@@ -93,11 +94,21 @@ def _chain_step(words: _Words, text: str, base: Path, registry: Registry) -> Ste
         key, equals, value = token[0].partition("=")
         if not equals or not key:
             message = f"{token[0]!r} is not an option, which is key=value"
-            hint = f"separate passes by |: {words.name[0]} | {token[0]}"
+            meant = _several(text, registry) or f"{words.name[0].rstrip(',;')} | {token[0]}"
+            hint = f"separate passes by |: {meant}"
             raise UsageError.one("GX712", message, _place(text, token), hint)
         if key in options:
             raise UsageError.one("GX712", f"{key!r} is given twice", _place(text, token))
         options[key] = Argument(_QUOTED.sub(lambda quoted: quoted[1] or quoted[2] or "", value))
         places[key] = _place(text, token)
+    if words.name[0] not in registry.passes and (meant := _several(words.name[0], registry)):
+        message = f"{words.name[0]!r} is not one pass"
+        raise UsageError.one("GX712", message, places["use"], f"separate passes by |: {meant}")
     chosen = registry.pass_(words.name[0], places["use"])
     return built(chosen, options, base, registry, lambda key: places.get(key, places["use"]))
+
+
+def _several(text: str, registry: Registry) -> str:
+    """Return the passes that a text names with something else between them, as a chain; or ""."""
+    names = [each for each in _NAME.findall(text.lower()) if each in registry.passes]
+    return " | ".join(names) if len(names) > 1 else ""
