@@ -22,6 +22,7 @@ from gcxform.values import dataclass
 PI = np.longdouble("3.14159265358979323846264338327950288")
 NEAR = 1e-9  # of a number: so far may another control's arithmetic be off
 EQUAL = 1e-4  # numbers that differ by less are equal to LinuxCNC
+ROUNDED = "round it in a block before, #100=ROUND[...] for one, and name that here"
 INTEGER = 1e-4  # LinuxCNC takes what is as near to a whole number for that number
 LARGEST_INT = 2.0**31
 
@@ -146,7 +147,7 @@ def whole(value: float, slip: float = INTEGER) -> int:
     """Return the whole number that a value stands for. Raises NoValueError."""
     nearest = math.floor(value + 0.5)
     if abs(value - nearest) > slip:
-        raise NoValueError(f"{value:.10g} is not a whole number")
+        raise NoValueError(f"{value:.10g} is not a whole number", ROUNDED)
     return nearest
 
 

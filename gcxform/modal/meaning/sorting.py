@@ -37,6 +37,7 @@ from gcxform.modal.meaning.too_many import drops_move, too_many
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
+BEHIND_AN_END = "; ends a block: what is behind it is another line, and a comment stands in ( )"
 CENTRE = "IJK"
 COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""
@@ -61,7 +62,9 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
         return
     if shape.block.error is not None:
         column, message = shape.block.error
-        yield Refusal("GX101", column - 1, 1, f"this is not {dialect.name} G-code: {message}")
+        message = f"this is not {dialect.name} G-code: {message}"
+        hint = BEHIND_AN_END if "';'" in message else ""
+        yield Refusal("GX101", column - 1, 1, message, hint)
     yield from lathe_signs(shape, dialect)
     yield from _items(shape, dialect, meaning)
     yield from _g_codes(shape, dialect, meaning)
