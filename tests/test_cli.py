@@ -103,6 +103,7 @@ def test_a_verb_that_is_misspelt_is_proposed() -> None:
     assert found.exit_code == 2
     assert "there is no verb 'rum'; did you mean 'run'?" in found.stderr
     assert "No such command 'xyzzy'" in call("xyzzy").stderr
+    assert "there is no file 'part.nc'" in call("part.nc").stderr
 
 
 def test_a_program_without_a_verb_is_told_what_to_type(
@@ -123,6 +124,9 @@ def test_a_program_without_a_verb_is_told_what_to_type(
             assert done.exit_code == 0, (line, done.output)
     (tmp_path / "empty").mkdir()
     assert "-f DIALECT" in call("empty").stderr
+    for name in ("b.nc", "c.nc"):
+        (tmp_path / "parts 1" / name).write_text("%\nO01234\nN5 G00 G17 G90\nN10 G53 Z0.\nM30\n%\n")
+    assert "it looks like haas" in call("parts 1").stderr  # as most of its programs
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="there is no bash")

@@ -51,6 +51,33 @@ def test_check_says_what_a_program_looks_like_where_nobody_does(here: Path) -> N
         assert refused.exit_code == 2
         assert "GX726" in refused.output
         assert "-x absolute -f linuxcnc" in refused.output
+    for words in (("run", "-x", "absolute", "two.nc"), ("post", "-x", "absolute", "two.nc")):
+        refused = call(*words)
+        assert (refused.exit_code, "GX722" in refused.stderr) == (2, True)
+        assert "two.nc looks like linuxcnc" in refused.stderr
+        assert "; -f linuxcnc; " in refused.stderr
+
+
+def test_check_says_why_nothing_is_guessed(here: Path) -> None:
+    (here / "empty.nc").write_bytes(b"")
+    (here / "wide.nc").write_bytes("G21 G90\n".encode("utf-16"))
+    for name, code, why in (
+        ("none.nc", 5, "cannot read none.nc"),
+        ("empty.nc", 2, "empty.nc looks like a program in no dialect"),
+        ("wide.nc", 5, "it is UTF-16"),
+    ):
+        found = call("check", name)
+        assert (found.exit_code, why in found.stderr) == (code, True), found.stderr
+
+
+def test_check_says_of_a_program_in_another_dialect_what_it_looks_like(here: Path) -> None:
+    (here / "mill.nc").write_bytes(b"%\nO01234\nN5 G00 G17 G90\nN10 G53 Z0.\nN15 T7 M06\nM30\n%\n")
+    found = call("check", "-f", "grbl", "mill.nc")
+    assert found.exit_code == 1
+    assert "read as grbl, and it looks like haas" in found.stdout
+    (here / "mill.nc").write_bytes(b"%\nO01234\nN5 G00 G17 G90\nX?\nN10 G53 Z0.\nM30\n%\n")
+    found = call("check", "-f", "haas", "mill.nc")
+    assert (found.exit_code, "looks like" in found.stdout) == (1, False), found.stdout
 
 
 @pytest.mark.parametrize(

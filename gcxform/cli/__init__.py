@@ -89,6 +89,8 @@ class Verbs(click.Group):
                 ctx.fail(next_steps(args[0]))
             if near := get_close_matches(args[0].lower(), VERBS, n=1):
                 ctx.fail(f"there is no verb {args[0]!r}; did you mean {near[0]!r}?")
+            if "." in args[0] or os.sep in args[0]:
+                ctx.fail(f"there is no file {args[0]!r}, and no such verb")
         return super().resolve_command(ctx, args)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:

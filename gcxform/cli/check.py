@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from shlex import quote
 from typing import Any, NamedTuple
 
 import click
@@ -27,6 +28,7 @@ from gcxform.contract.passes import Pass
 from gcxform.diagnostics import PRINTED_AT_MOST, Diagnostic, InputError, Severity, UsageError
 from gcxform.flow.by_itself import is_subprogram
 from gcxform.flow.straightened import located, written_out
+from gcxform.guess import FOREIGN
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.program_end import Ending
 from gcxform.modal.reader import Tables, windows_of
@@ -70,10 +72,21 @@ def _alone(what: Asked, file: str) -> Asked:
     """
     if what.dialect:
         return replace(what, chain="")
-    if document() is not None or (guess := guessed(file)) is None:
+    if document() is not None:
         return what
+    if (guess := guessed(file)) is None:
+        return _unlike(file)
     say(f"read as {guess.dialects[0]}, since it looks like {guess}; -f DIALECT says what it is")
     return replace(what, chain="", dialect=guess.dialects[0])
+
+
+def _unlike(file: str) -> Asked:
+    """Refuse a program that looks like none: it cannot be read, or no dialect is its own."""
+    if file != "-":
+        with opened(file):
+            pass
+    hint = f"-f DIALECT reads it as that; `gcxform list dialects`, `gcxform info {quote(file)}`"
+    raise UsageError.one("GX722", f"{file} looks like a program in no dialect", hint=hint)
 
 
 # --- the chain ---
@@ -163,8 +176,17 @@ def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     values["missing"] = [".".join(each) for each in open_.asked()]
     head = [*(f"assumed   {each}" for each in assumed)]
     head.append(f"{source.name}: {lines} lines, {_count(found)}")
-    answer(values, [*head, *_asked(open_, what, pipeline)])
+    answer(values, [*head, *_other_dialect(found, what, pipeline), *_asked(open_, what, pipeline)])
     return 1 if found else 0
+
+
+def _other_dialect(found: Sequence[Diagnostic], what: Asked, pipeline: Pipeline) -> Iterator[str]:
+    """Yield what a program looks like that is read in a dialect which does not know its words."""
+    if not what.program or FOREIGN.isdisjoint(each.code for each in found):
+        return
+    guess = guessed(what.program)
+    if guess is not None and pipeline.source.name not in guess.dialects:
+        yield f"read as {pipeline.source.name}, and it looks like {guess}"
 
 
 def _count(found: Sequence[Diagnostic]) -> str:

@@ -16,6 +16,7 @@ import click
 
 from gcxform.cli import VERBS
 from gcxform.cli.common import answer, options
+from gcxform.cli.common.failures import typed
 from gcxform.cli.common.outputs import STDOUT, check_places
 from gcxform.cli.common.pipelines import Pipelines
 from gcxform.cli.common.request import Asked, excluding
@@ -82,7 +83,8 @@ def _say(text: str) -> None:
 
 
 def _plain(error: GcxformError) -> str:
-    """Return the first findings without colour."""
-    first = type(error)(error.diagnostics[:SHOWN])
+    """Return the first findings without colour, as the command line takes their hints."""
+    meta = click.get_current_context().meta
+    first = type(error)(tuple(typed(error.diagnostics[:SHOWN], meta)))
     more = len(error.diagnostics) - SHOWN
     return f"{first.render()}\n... and {more} more" if more > 0 else first.render()

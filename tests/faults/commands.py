@@ -203,4 +203,40 @@ MUTATIONS = (
         "self.rule.seconds(address, decimals >= 9)",
         "tests/test_info.py",
     ),
+    Mutation(
+        "commands: a folder is what its first program is",
+        "gcxform/cli/common/first_steps.py",
+        "max(found, key=_alike(found), default=None)",
+        "next(iter(found), None)",
+        "tests/test_cli.py::test_a_program_without_a_verb_is_told_what_to_type",
+    ),
+    Mutation(
+        "commands: whatever is read looks like something else",
+        "gcxform/cli/check.py",
+        "if guess is not None and pipeline.source.name not in guess.dialects:",
+        "if guess is not None:",
+        "tests/test_cli_verbs.py::"
+        "test_check_says_of_a_program_in_another_dialect_what_it_looks_like",
+    ),
+    Mutation(
+        "commands: post gives hints for files to who types a chain",
+        "gcxform/cli/post.py",
+        "tuple(typed(error.diagnostics[:SHOWN], meta))",
+        "error.diagnostics[:SHOWN]",
+        "tests/test_cli_verbs.py::test_check_says_what_a_program_looks_like_where_nobody_does",
+    ),
+    Mutation(
+        "commands: what no dialect fits has no pipeline",
+        "gcxform/cli/check.py",
+        "return _unlike(file)",
+        "return what",
+        "tests/test_cli_verbs.py::test_check_says_why_nothing_is_guessed",
+    ),
+    Mutation(
+        "commands: a comma is part of a pass",
+        "gcxform/pipeline/chain_text.py",
+        'return " | ".join(names) if len(names) > 1 else ""',
+        'return ""',
+        "tests/test_pipelinefile.py::test_what_is_refused_in_a_chain",
+    ),
 )

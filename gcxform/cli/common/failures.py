@@ -103,7 +103,7 @@ def told(error: Exception, meta: Mapping[str, Any]) -> int:
         return _misspelt(error, found)
     if isinstance(error, GcxformError):
         if found is None:
-            say(paint(render_all(_typed(said_once(error.diagnostics), meta)), sys.stderr))
+            say(paint(render_all(typed(said_once(error.diagnostics), meta)), sys.stderr))
         else:
             found += error.diagnostics
         return error.exit_code
@@ -156,11 +156,11 @@ def warn(diagnostics: Iterable[Diagnostic]) -> None:
     meta = {} if context is None else context.meta
     if ANSWER in meta:
         meta[ANSWER].findings += diagnostics
-    elif text := render_all(_typed(diagnostics, meta)):
+    elif text := render_all(typed(diagnostics, meta)):
         say(paint(text, sys.stderr))
 
 
-def _typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[Diagnostic]:
+def typed(diagnostics: Iterable[Diagnostic], meta: Mapping[str, Any]) -> list[Diagnostic]:
     """Return diagnostics with hints for who has no pipeline file: as the command line takes them.
 
     Who named one, or has one in the environment or in the folder, can write into it what a hint

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,18 +12,39 @@ if TYPE_CHECKING:
     from gcxform.guess import Guess
 
 
+LOOKED_AT = 12  # of the programs of a folder
+
+
 def guessed(file: str) -> Guess | None:
-    """Return in which dialects a program, or the first of a folder, may be; None: nothing fits."""
+    """Return in which dialects a program may be, or one like most of a folder; None: none fits."""
+    from gcxform.cli.common.programs import files_of
+    from gcxform.diagnostics import GcxformError
+
+    with suppress(GcxformError):
+        found = [each for each in map(_guess, files_of([file])[:LOOKED_AT]) if each is not None]
+        return max(found, key=_alike(found), default=None)
+    return None
+
+
+def _guess(path: Path) -> Guess | None:
+    """Return in which dialects a program may be; None if it cannot be read, or nothing fits."""
     from gcxform.diagnostics import GcxformError
     from gcxform.guess import guess_dialect
 
-    path = Path(file)
     with suppress(GcxformError, OSError, ValueError):
-        if path.is_dir():
-            path = next(iter(sorted(each for each in path.iterdir() if each.is_file())), path)
         guess = guess_dialect(path) if path.is_file() else None
         return guess if guess and guess.dialects else None
     return None
+
+
+def _alike(found: list[Guess]) -> Callable[[Guess], float]:
+    """Return how well what is guessed of one program fits all of them."""
+
+    def fits(guess: Guess) -> float:
+        name = guess.dialects[0]
+        return sum(each.score(name) for each in found if name in each.evidence)
+
+    return fits
 
 
 def next_steps(file: str) -> str:

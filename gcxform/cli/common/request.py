@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gcxform.cli.common.discovery import NAME, pipeline_above
 from gcxform.cli.common.options import ENVIRONMENT
@@ -22,6 +22,9 @@ from gcxform.pipeline.file import SECTIONS, InputSpec, OutputSpec, PipelineSpec,
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import Registry, default_registry
 from gcxform.values import dataclass
+
+if TYPE_CHECKING:
+    from gcxform.guess import Guess
 
 
 @dataclass(frozen=True)
@@ -63,8 +66,10 @@ class Asked:
 
         Raises UsageError for one that is somebody else's.
         """
-        if self.says_chain or program == "-":
+        if program == "-":
             return self
+        if self.says_chain:
+            return replace(self, program=program)
         found = pipeline_above(Path(program))
         return replace(self, program=program, found=None if found is None else str(found))
 
@@ -90,6 +95,8 @@ class Asked:
         if self.entry is not None:
             spec = replace(spec, entry=replace(spec.entry, modes=self.entry))
         spec = self._limited(replace(spec, input=self._merged(spec.input), output=output))
+        if not (self.dialect or spec.input.dialect):
+            raise self._no_dialect()
         machine = Path(self.machine) if self.machine else None
         return Pipeline.of_spec(spec, registry, self.dialect or "", self.to or "", machine)
 
@@ -103,11 +110,23 @@ class Asked:
         passes = tuple(parse_chain(self.chain, Path.cwd(), registry))
         return PipelineSpec(passes=passes, warnings=chain_doubts(self.chain))
 
-    def _no_pipeline(self) -> UsageError:
-        """Return the error for a command line that says nothing of what is to be done."""
+    def _guessed(self) -> Guess | None:
+        """Return in which dialects the program may be, if there is one and nobody says it."""
         from gcxform.cli.common.first_steps import guessed
 
-        guess = None if self.dialect or not self.program else guessed(self.program)
+        return None if self.dialect or not self.program else guessed(self.program)
+
+    def _no_dialect(self) -> UsageError:
+        """Return the error for a pipeline whose dialect nobody says."""
+        guess = self._guessed()
+        looks = f"{self.program} looks like {guess}; " if guess else ""
+        kind = guess.dialects[0] if guess else "fanuc"
+        hint = f'{looks}dialect = "{kind}" in [input]; `gcxform list dialects`'
+        return UsageError.one("GX722", "which dialect is the program in?", hint=hint)
+
+    def _no_pipeline(self) -> UsageError:
+        """Return the error for a command line that says nothing of what is to be done."""
+        guess = self._guessed()
         kind = guess.dialects[0] if guess else self.dialect or "DIALECT"
         looks = f"{self.program} looks like {guess}; " if guess else ""
         hint = (

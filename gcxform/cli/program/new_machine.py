@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from shlex import quote
 from typing import Final, NamedTuple
 
 from gcxform.catalogue.questions import PIPELINE
@@ -147,6 +148,7 @@ def _said(read: Programs, found: Survey) -> Iterator[str]:
     if read.others:
         names = ", ".join(path.name for path in read.others[:5])
         more = f" and {len(read.others) - 5} more" if len(read.others) > 5 else ""
-        yield f"not read, for no dialect fits: {names}{more}"
+        yield f"not read, since too much of them is not {read.dialect}: {names}{more}"
+        yield f"  gcxform check -f {read.dialect} {quote(str(read.others[0]))}    what that is"
     left = list(found.left())
     yield from ["what no setting helps:", *(f"  {line}" for line in left)] if left else []
