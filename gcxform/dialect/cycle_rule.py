@@ -109,6 +109,8 @@ class CycleRule:
     keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given
     keeps_dwell     the last P stays for good, for cycles that take P but do not need it; 0 s before
                     the first one of the program
+    open_dwell      a cycle that needs P is executed without as well: how long it dwells then is not
+                    known, and its block stays
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
                     otherwise it is refused
     alone           the setting of the control that says "drills" if a block drills which names no
@@ -127,6 +129,7 @@ class CycleRule:
     rises_first: bool = False
     keeps_words: bool = False
     keeps_dwell: bool = False
+    open_dwell: bool = False
     stores: bool = False
     alone: str = ""
     one_plane: bool = True

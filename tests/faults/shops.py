@@ -32,6 +32,20 @@ FAULTS = (
         f"{CASE}[dialects/haas/cycle-without-place]",
     ),
     (
+        "a cycle that dwells nobody knows how long is written out",
+        "gcxform/modal/cycles/checks.py",
+        'letter == "P" and rule.open_dwell and self.open_pecks',
+        'letter == "P" and rule.open_dwell',
+        f"{CASE}[dialects/haas/cycle-without-dwell-written-out]",
+    ),
+    (
+        "a cycle without P is refused where it stays",
+        "plugins/gcxform_plugins/dialects/fanuc.py",
+        "open_dwell=True",
+        "open_dwell=False",
+        f"{CASE}[dialects/haas/cycle-without-dwell]",
+    ),
+    (
         "steps from nowhere under compensation",
         BLIND,
         " & (modes.comp == 0)",

@@ -34,7 +34,8 @@ class Checks:
     """Looks at the columns of stretches; `pecks` (n,): in how many pecks holes are drilled.
 
     `open_pecks`: where the tool goes between them need not be known, nor when it rises to an R
-    above the level from which the cycle began. Over the hole, or once at R, that is the same.
+    above the level from which the cycle began. Over the hole, or once at R, that is the same. Nor
+    how long it dwells, where the control dwells without P as well.
     `open_ways`: nor how it gets out of the hole, of a cycle of which that is refused.
     """
 
@@ -126,6 +127,7 @@ class Checks:
             left_open = self._listed(lambda one: one.open_words, letter)
             yield ~unset & left_open, open_, "write G80 before it"
             missing = self.drilled & unset & self._listed(lambda one: one.needs, letter)
+            missing &= not (letter == "P" and rule.open_dwell and self.open_pecks)
             yield missing, f"{{code}} without {letter}", "give it in this block"
         yield calls.p < 0, "{code} with a negative P", ""
         pecks = self._with_code([code for code, one in self.cycles.items() if one.pecks])

@@ -30,6 +30,7 @@
 | tool change | moves axes: positions are unknown after it, but for `inert-m = [6]` |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
+| G82, G89 without P | how long they dwell is not known: refused, unless the blocks are copied |
 | G76 | the shift in the hole is a parameter's: stays, to the same control; else refused |
 | G87, G88 | depend on parameters or on the operator: refused |
 | `%` in a comment | ends the file there: none is written from programs of other controls |
@@ -112,7 +113,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, open_dwell=True, stores=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):
