@@ -107,6 +107,11 @@ class Reading:
     entry: Entry = field(default_factory=Entry)
     tool: int | None = None
 
+    @property
+    def same_words(self) -> bool:
+        """Whether the program is written for its own control, by passes that say the same words."""
+        return self.open_pecks and not self.modes_count
+
     def __post_init__(self) -> None:
         """Take what a caller may write for what it means; refuse all else. Raises UsageError."""
         for name, value in self._taken().items():

@@ -18,6 +18,20 @@ FAULTS = (
         f"{CASE}[dialects/haas/machine-coordinates-in-feed]",
     ),
     (
+        "a G53 under G1 of a Fanuc is refused where its block stays",
+        "gcxform/modal/moves/home.py",
+        "g53_is_rapid and not track.lines.reading.same_words",
+        "g53_is_rapid",
+        f"{CASE}[hazards/machine-coordinates-in-feed]",
+    ),
+    (
+        "a G53 under G1 of a Fanuc is cut into pieces",
+        "gcxform/modal/state.py",
+        "return self.open_pecks and not self.modes_count",
+        "return self.open_pecks",
+        f"{CASE}[hazards/machine-coordinates-in-feed-segmented]",
+    ),
+    (
         "behind a cycle that may drill or not the tool stands at R",
         "gcxform/modal/moves/cycle_patterns.py",
         "if after[normal] != words[normal]:",

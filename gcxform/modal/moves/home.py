@@ -27,6 +27,7 @@ TOOL_BACK = "draw the tool back, write G49 before, which may move it, and G43 af
 PLAIN = "write G15 before, the place in plain coordinates, and G16 again behind"
 PLACE = "write it under G90, with its place in the machine"
 CLEAR = "write G0 in this block if the way is clear, or G1"
+RAPID = "write G0 in this block if the way is clear, and G1 again behind it"
 
 
 def own_moves(track: Track, line: int) -> Own | None:
@@ -245,9 +246,10 @@ def _in_machine(track: Track, line: int) -> Own:
     if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
         message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
         track.findings.add(line, "GX213", message, hint=PLACE)
-    if kind == Kind.LINE and track.dialect.motion_rule.g53_is_rapid:
+    rapid = track.dialect.motion_rule.g53_is_rapid and not track.lines.reading.same_words
+    if kind == Kind.LINE and rapid:
         message = "G53 under G1: this control moves in rapid whatever is in force"
-        track.findings.add(line, "GX213", message, hint="write G0 in this block")
+        track.findings.add(line, "GX213", message, hint=RAPID)
     end = track.state.position.tolist()
     for axis, value in words.items():
         k = track.axes.index(axis)
