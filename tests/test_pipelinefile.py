@@ -168,7 +168,7 @@ def test_a_whole_pipeline(folder: Path) -> None:
 def test_an_empty_pipeline(folder: Path) -> None:
     spec = loaded(folder, "format = 1\n")
     assert spec == PipelineSpec(file=folder / "p.toml")
-    assert (spec.input.block_delete, spec.input.units) == ("", "mm")
+    assert (spec.input.block_delete, spec.input.units) == ("", "")
     assert (spec.output.decimals, spec.output.words) == (None, "changed")
 
 

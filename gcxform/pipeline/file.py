@@ -71,7 +71,10 @@ class InputSpec:
     block_delete: Annotated[
         Literal["execute", "skip", ""], Option("what the control does with / blocks")
     ] = ""
-    units: Annotated[Literal["mm", "in"], Option("units before the first G20 or G21")] = "mm"
+    units: Annotated[
+        Literal["mm", "in", ""],
+        Option("units before the first G20 or G21; absent: those in which its control begins"),
+    ] = ""
     parameters: Annotated[
         ParameterValues, Option("values of parameters that the program reads and does not set")
     ] = field(default_factory=dict)

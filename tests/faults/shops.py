@@ -32,6 +32,15 @@ FAULTS = (
         f"{CASE}[hazards/machine-coordinates-in-feed-segmented]",
     ),
     (
+        "programs begin in mm whatever the control",
+        "gcxform/pipeline/file.py",
+        '''absent: those in which its control begins"),
+    ] = ""''',
+        '''absent: those in which its control begins"),
+    ] = "mm"''',
+        f"{CASE}[dialects/controls/centroid-begins-in-inches]",
+    ),
+    (
         "behind a cycle that may drill or not the tool stands at R",
         "gcxform/modal/moves/cycle_patterns.py",
         "if after[normal] != words[normal]:",
