@@ -20,6 +20,7 @@ class ProgramRule:
     has_program_number an O number may stand at its head
     number_digits      how many digits such a number may have; 0: any number
     spindle_stands     the spindle stands still, as far as the control knows, when a program starts
+    unit_is_set        a setting of the control decides in which unit a program begins
     block_delete       what is done with `/` blocks: "execute", "skip", or "": a switch decides
     needs_end          a file without M2 or M30, and not between two percent signs, is refused
     stops_at_end       M2 and M30 stop the control
@@ -33,6 +34,7 @@ class ProgramRule:
     has_program_number: bool = True
     number_digits: int = 0
     spindle_stands: bool = False
+    unit_is_set: bool = False
     block_delete: str = ""
     needs_end: bool = False
     stops_at_end: bool = True

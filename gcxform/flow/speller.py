@@ -28,11 +28,13 @@ class Speller(ABC):
 
     `comment` begins a line that says nothing to the control, wherever one may stand behind the end
     of a program; nothing where none may. `inert` are M codes that leave the axes where they stand.
+    `says_unit`: programs begin with the unit of their lengths.
     """
 
     inert: frozenset[str] = frozenset()
 
     comment: ClassVar[str] = ""
+    says_unit: ClassVar[bool] = False
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
+from gcxform.diagnostics import InputError, Location
 from gcxform.emit.emitter import Emitted
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from gcxform.emit.folding import Folded
     from gcxform.flow.speller import Speller
     from gcxform.flow.translated import Translated
+
+UNIT = 'units = "mm" in [input], or units = "in" in [input] where the setting says inches'
 
 
 @dataclass
@@ -125,6 +128,7 @@ class SpelledOut:
 
         blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
+        self._refuse_open_unit(blocks)
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
             blocks, lines, self.kind, self.given.name, inch, self.plan.inert
@@ -132,6 +136,17 @@ class SpelledOut:
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
+
+    def _refuse_open_unit(self, blocks: list[bytes]) -> None:
+        """Refuse to say a unit which a setting of the control decides that the program is for."""
+        from gcxform.emit.spelled_out import unit_said
+
+        source, target = self.plan.source, self.plan.target
+        is_open = source.program_rule.unit_is_set and not self.plan.reading.units
+        if is_open and self.kind.says_unit and unit_said(blocks) is None:
+            message = f"{target.name} says the unit, and this program does not: a setting decides"
+            where = Location(self.given.name, 1)
+            raise InputError.one("GX501", f"{message} it", where, UNIT)
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program is the one that has been proved. Raises VerificationError."""

@@ -41,6 +41,13 @@ FAULTS = (
         f"{CASE}[dialects/controls/centroid-begins-in-inches]",
     ),
     (
+        "the unit that a setting decides is said",
+        "gcxform/pipeline/written_back.py",
+        "if is_open and self.kind.says_unit and",
+        "if False and",
+        f"{CASE}[dialects/across/unit-of-a-setting]",
+    ),
+    (
         "behind a cycle that may drill or not the tool stands at R",
         "gcxform/modal/moves/cycle_patterns.py",
         "if after[normal] != words[normal]:",

@@ -7,6 +7,7 @@
 | text behind % in its line | is a title, not read (B-64014EN p. 21, B-63524EN p. 649) |
 | motion at start | parameter 3402: taken as unknown, so the first move needs its code |
 | units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
+| units of a program for a TNC | must be stated: its first line says MM or INCH |
 | two codes of a group | the last is taken |
 | arc centre | incremental only; no centre at all: refused (parameter 3403 decides what is cut) |
 | R together with I J K | refused |
@@ -195,7 +196,7 @@ class Fanuc(gx.Dialect):
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
-    program_rule = gx.ProgramRule(has_title=True)
+    program_rule = gx.ProgramRule(has_title=True, unit_is_set=True)
     text_rule = gx.TextRule(lower_case=False, acts_anywhere="%")
     block_rule = gx.BlockRule(
         last_code_wins=True,
