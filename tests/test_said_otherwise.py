@@ -130,6 +130,8 @@ def test_m_codes_by_a_table_and_those_that_are_dropped():
     ]
     found = refused("haas", "linuxcnc", "M31")
     assert found.hint == 'drop = ["M31"] in [output] leaves it out'
+    found = refused("fanuc", "linuxcnc", "S3000 M13")  # the spindle, with coolant, on many machines
+    assert "leaves it out, if it turns no spindle" in found.hint
     stops, _ = said("linuxcnc", "grbl", "T1 M6", m_codes={"M6": "M0"})
     assert stops == ["T1 M0"]
 

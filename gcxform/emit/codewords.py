@@ -34,6 +34,7 @@ EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPI
 
 
 TURNS = frozenset({"M3", "M4", "M5"})
+UNKNOWN_M = ", if it turns no spindle and clamps nothing; m-codes in [output] has another for it"
 SET_TOOL = "set-tool"
 """The act of a code that says which tool is in the spindle, and changes none."""
 
@@ -162,7 +163,9 @@ class CodeWords:
             return ""
         if code.group == "tool" and code.act != SET_TOOL:
             return f"{self.saying.m_coding(name, 'M0')}, where the operator changes it"
-        return f"{self.saying.dropping(name)} leaves it out"
+        left_out = f"{self.saying.dropping(name)} leaves it out"
+        unknown = code is self.source.block_rule.unknown_m
+        return f"{left_out}{UNKNOWN_M}" if unknown else left_out
 
     # --- what has to be stated ---
 

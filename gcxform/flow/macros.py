@@ -110,7 +110,8 @@ class MacroB(MacroPrograms):
             self.listing.meaning(n).ends and not returns(self.listing.block(n)) for n in special
         ):
             message = "M99 outside a call, in a program that ends as well: it begins anew here"
-            raise self.refusal("GX226", message, "let the program end with M30 alone")
+            hint = "let the program end with M30 alone, or transform the one that calls it"
+            raise self.refusal("GX226", message, hint)
         to = self.number(block, "P")
         if any(first <= line < last for line in self._sequences.get(to, ())):
             message = f"M99 P{to:g} goes to N{to:g} of this program, or of one that has called it"

@@ -425,4 +425,11 @@ MUTATIONS = (
         "False:",
         "tests/test_corpus.py::test_case[feed/measured-in-another-mode]",
     ),
+    Mutation(
+        "saying: an M code that may turn the spindle is left out without a word",
+        "gcxform/emit/codewords.py",
+        "unknown = code is self.source.block_rule.unknown_m",
+        "unknown = False",
+        "tests/test_said_otherwise.py::test_m_codes_by_a_table_and_those_that_are_dropped",
+    ),
 )
