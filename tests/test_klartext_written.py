@@ -242,9 +242,8 @@ ARCS = """0 BEGIN PGM A MM
 4 CYCL DEF 200 DRILLING ~
 Q200=2
 5 C X+5,100 Y+4,999 DR-
-6 CR X+20 Y+5 R+20 DR+
-7 RND R2
-8 END PGM A MM
+6 FN 18: SYSREAD Q1 = ID20 NR1
+7 END PGM A MM
 """
 
 
@@ -262,11 +261,18 @@ def test_a_circle_becomes_lines_and_block_numbers_are_renewed():
 7 CYCL DEF 200 DRILLING ~
 Q200=2
 8 L X+5.1 Y+4.999
-9 CR X+20 Y+5 R+20 DR+
-10 RND R2
-11 END PGM A MM
+9 FN 18: SYSREAD Q1 = ID20 NR1
+10 END PGM A MM
 """
     )
+
+
+@pytest.mark.parametrize("line", ["CR X+20 Y+5 R+20 DR+", "RND R2", "CT X+9", "APPR LCT X+9 R2 RL"])
+def test_an_arc_that_stays_is_not_made_of_lines(line):
+    """Its neighbour hangs on it, or it ends nowhere that is known."""
+    text = program("L X+0 Y+0 Z+5 R0 FMAX", "L X+5 F200", line, "RND R2", "L Y+50 R0")
+    with pytest.raises(gx.InputError, match="along an arc"):
+        written(text, Segment(chord_error=0.2))
 
 
 ISO = b"""%

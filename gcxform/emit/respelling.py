@@ -8,7 +8,7 @@ executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 import numpy as np
 
@@ -18,8 +18,16 @@ from gcxform.flow.annexed import BYTE_ORDER_MARK, LINE_END
 from gcxform.flow.speller import UnspeakableError
 from gcxform.flow.translated import Translated
 from gcxform.flow.translation import Translator
+from gcxform.toolpath.facts import Fact
 
 HINT = "let the CAM write plain moves in its place, or write for another dialect"
+WHY = {
+    "METRIC": "its lengths are inches",
+    "LINEAR_ONLY": "it may lead along an arc",
+    "XY_ARCS": "it may lead along an arc",
+    "NO_CUTTER_COMP": "cutter compensation begins in it",
+}
+"""What is wrong with a line that has what is against a fact."""
 
 
 def respelled(
@@ -68,18 +76,28 @@ def respelled(
     return translator.renumbered(made_of.decode("latin-1")).encode("latin-1")
 
 
-def refuse_kept_inches(source: Translated) -> None:
-    """Refuse a line that is kept as it stands and puts inches in force: they would stay so.
+def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
+    """Refuse a line that is kept as it stands and is what a pass leaves nowhere: it would stay so.
 
     Raises InputError.
     """
     translator, said = source.translator, source.text.splitlines()
-    if translator.inches is None:
+    against = [
+        (translator.against[f.name], WHY[f.name])
+        for f in facts
+        if f.name in WHY and f.name in translator.against
+    ]
+    if not against:
         return
-    for line, block in zip(source.origin.tolist(), said, strict=True):
-        if _is_kept(translator.kept, [block]) and translator.inches.search(source.lines[line]):
-            message = "this line is kept as it stands, and its lengths are inches"
-            raise _refusal(source, line, message)
+    kept = [
+        line
+        for line, block in zip(source.origin.tolist(), said, strict=True)
+        if _is_kept(translator.kept, [block])
+    ]
+    for line in (*kept, *translator.left_behind()):
+        for pattern, why in against:
+            if pattern.search(source.lines[line]):
+                raise _refusal(source, line, f"this line is kept as it stands, and {why}")
 
 
 class _Spelling:

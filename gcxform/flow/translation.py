@@ -59,8 +59,9 @@ class Translator(LineShapes):
     """Names of what they may hang on and do not change: `key` tells that, or it never changes."""
     stepped: ClassVar[re.Pattern[str] | None] = None
     """What stands in each line that `counts`; without it all are asked."""
-    inches: ClassVar[re.Pattern[str] | None] = None
-    """What a line has that puts lengths in inches in force."""
+    against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
+    """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
+    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS, compensation by NO_CUTTER_COMP."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
@@ -145,6 +146,10 @@ class Translator(LineShapes):
     def renumbered(self, text: str) -> str:
         """Return a program in which a line became several, with its numbers anew."""
         return text
+
+    def left_behind(self) -> range:
+        """Return the lines, from 0, that are kept and have no block: nothing read them."""
+        return range(0)
 
     def counts(self, line: str) -> bool:
         """Return whether a line has words that count from where an axis stands."""

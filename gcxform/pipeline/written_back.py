@@ -14,7 +14,7 @@ from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
 from gcxform.proof.findings import Findings
 from gcxform.syntax.source import Source, lines_in
-from gcxform.toolpath.facts import ABSOLUTE, METRIC
+from gcxform.toolpath.facts import ABSOLUTE
 from gcxform.values import dataclass
 
 if TYPE_CHECKING:
@@ -54,12 +54,11 @@ class WrittenBack:
     def fold(self) -> Folded:
         """Return the program. Raises InputError where a line cannot be spelled."""
         from gcxform.emit.folding import Folded
-        from gcxform.emit.respelling import refuse_kept_inches, respelled
+        from gcxform.emit.respelling import refuse_kept, respelled
         from gcxform.proof.respelled import check_kept
 
         given, facts = b"".join(self.given.windows()), facts_after(self.plan.path_passes)
-        if METRIC in facts:
-            refuse_kept_inches(self.source)
+        refuse_kept(self.source, facts)
         counting, text = frozenset[int](), given
         if ABSOLUTE in facts:
             counting = self.source.translator.counting_lines()

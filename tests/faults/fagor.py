@@ -29,6 +29,13 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "fagor: what nobody has read is made of lines",
+        PROGRAMS,
+        "self.kept_lines[-1][0] + 1 if self.tied else self.own, self.own",
+        "self.own, self.own",
+        f"{CASE}segment-of-a-kept-arc]",
+    ),
+    Mutation(
         "fagor: a tool that is fetched is not said",
         "plugins/gcxform_plugins/dialects/fagor/lines.py",
         'elif "T" in values:',

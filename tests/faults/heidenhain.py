@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: arcs that stand as they do are lines",
+        BACK,
+        '    "LINEAR_ONLY": ARCS,\n',
+        "",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-segment-of-a-kept-arc]",
+    ),
+    Mutation(
         "heidenhain: a tool is fetched and changed at once",
         "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
         'if not (line.startswith("TOOL DEF ") and after.startswith(called)):',

@@ -902,9 +902,30 @@ MUTATIONS = (
     Mutation(
         "siemens: a program in inches is a metric one",
         "gcxform/pipeline/written_back.py",
-        "        if METRIC in facts:\n",
-        "        if False:\n",
+        "        refuse_kept(self.source, facts)\n",
+        "",
         f"{CASES}[dialects/siemens/metric-of-kept-inches]",
+    ),
+    Mutation(
+        "siemens: arcs that stand as they do are lines",
+        EFFECTS,
+        '    "LINEAR_ONLY": ARCS,\n',
+        "",
+        f"{CASES}[dialects/siemens/segment-of-a-kept-arc]",
+    ),
+    Mutation(
+        "siemens: a text that is shown is an arc that stays",
+        EFFECTS,
+        """CODE = r'(?i)^(?:[^;"]|"[^"]*")*?(?<![A-Z0-9_])'""",
+        """CODE = r'(?i)(?<![A-Z0-9_])'""",
+        f"{CASES}[dialects/siemens/segment-of-a-kept-text]",
+    ),
+    Mutation(
+        "siemens: compensation that stands as it does is computed",
+        EFFECTS,
+        '    "NO_CUTTER_COMP": re',
+        '    "COMP": re',
+        f"{CASES}[dialects/siemens/cutter-comp-of-kept-sides]",
     ),
     Mutation(
         "siemens: a line of another file is changed in silence",

@@ -62,7 +62,14 @@ STATE = (
     ),
     *("gone", "pole", "polar", "plane", "turned", "untold"),
 )
-INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
+CODE = r"(?i)^(?:[^;(]|\([^)]*\))*?(?<![A-Z0-9_.])"
+ARCS = re.compile(rf"{CODE}(?:G[ \t]*0*(?:[2389]|3[678])(?![0-9.])|(?<=#)(?:SPLINE|AKIMA|POLY))")
+AGAINST = {
+    "METRIC": re.compile(rf"{CODE}G[ \t]*0*70(?![0-9.])"),
+    "LINEAR_ONLY": ARCS,
+    "XY_ARCS": ARCS,
+    "NO_CUTTER_COMP": re.compile(rf"{CODE}G[ \t]*0*4[12](?![0-9.])"),
+}
 
 
 class Programs(Flow):
@@ -78,7 +85,7 @@ class Programs(Flow):
     writes = True
     speller = Lines
     kept = KEPT
-    inches = INCHES
+    against = AGAINST
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)
@@ -183,6 +190,10 @@ class Programs(Flow):
         self.calls = []
         self.at = len(self.lines)
         return made or [self._stays("")]
+
+    def left_behind(self) -> range:
+        """Return the lines behind the one from which all stay."""
+        return range(self.kept_lines[-1][0] + 1 if self.tied else self.own, self.own)
 
     def _stays(self, text: str) -> str:
         return f"{KEPT} P{zlib.crc32(text.encode('latin-1')) & 0xFFFFF}"

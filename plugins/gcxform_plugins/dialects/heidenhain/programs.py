@@ -38,6 +38,14 @@ SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)
 HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
 TITLE = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?\*")
 """A structure block: a text."""
+ARCS = re.compile(
+    r"(?i)^[\s\d/]*(?:(?:C|CR|CT|CP|CTP|RND|FCT?|SPL)(?![A-Z])|(?:APPR|DEP)\s*P?(?:CT|LCT))"
+)
+AGAINST = {
+    "LINEAR_ONLY": ARCS,
+    "XY_ARCS": ARCS,
+    "NO_CUTTER_COMP": re.compile(r"(?i)^[^;*]*?(?<![A-Z])R[LR](?![A-Z])"),
+}
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
 NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+[ \t]*)?")
 FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
@@ -59,6 +67,7 @@ class Programs(Runs):
     writes = True
     speller = Lines
     kept = KEPT
+    against = AGAINST
     stepped = STEPPED
 
     def __init__(self, *program: object) -> None:

@@ -46,6 +46,17 @@ STILL = re.compile(
     re.IGNORECASE,
 )
 """Words of the spindle, of coolant, of stops, ends and corners."""
+CODE = r'(?i)^(?:[^;"]|"[^"]*")*?(?<![A-Z0-9_])'
+ARCS = re.compile(
+    rf"{CODE}(?:G[ \t]*0*[23](?![0-9.])|(?:CIP|CT|INVC?CW|[ABC]SPLINE|POLY|RNDM?)(?![A-Z0-9_]))"
+)
+AGAINST = {
+    "METRIC": re.compile(rf"{CODE}G[ \t]*0*700?(?![0-9.])"),
+    "LINEAR_ONLY": ARCS,
+    "XY_ARCS": ARCS,
+    "NO_CUTTER_COMP": re.compile(rf"{CODE}G[ \t]*0*4[12](?![0-9.])"),
+}
+"""Where these stand in a line that stays, a pass cannot do what it is for."""
 
 
 def effect_of(parse: Callable[[str], Node], text: str, known: Callable[[str], bool]) -> str | None:

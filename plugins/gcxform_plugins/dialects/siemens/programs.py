@@ -25,7 +25,7 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import (
     axes_of,
     words_of,
 )
-from gcxform_plugins.dialects.siemens.effects import effect_of
+from gcxform_plugins.dialects.siemens.effects import AGAINST, effect_of
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.lines import Lines
@@ -79,7 +79,6 @@ STATE = (
     *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
     *("fed", "feed_mode", "pole", "polar", "feed_open", "orientation"),
 )
-INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*700?(?![0-9.])", re.IGNORECASE)
 
 
 class Programs(Learning):
@@ -88,7 +87,7 @@ class Programs(Learning):
     writes = True
     speller = Lines
     kept = KEPT
-    inches = INCHES
+    against = AGAINST
     stepped = STEPPED
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
