@@ -907,6 +907,13 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/metric-of-kept-inches]",
     ),
     Mutation(
+        "siemens: a turn beside the words of an arc is passed over",
+        MOVES,
+        'line.named.keys() - {"CR", "AR", "TURN"}',
+        'line.named.keys() - {"CR", "AR", "TURN", "RPL"}',
+        f"{CASES}[dialects/siemens/arc-beside-a-turn]",
+    ),
+    Mutation(
         "siemens: arcs that stand as they do are lines",
         EFFECTS,
         '    "LINEAR_ONLY": ARCS,\n',

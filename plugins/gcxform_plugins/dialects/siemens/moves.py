@@ -215,6 +215,10 @@ class Moves(Statements):
             return self._through(line, self._ends(line))
         if line.middles:
             self.refuse("I1, J1 and K1 belong to CIP", self.first_of(line))
+        others = line.named.keys() - {"CR", "AR", "TURN"}
+        if others:
+            name = min(others)
+            self.refuse(f"{name}= is no word of an arc", line.named[name][1])
         if not line.centres and not line.named.keys() & {"CR", "AR"}:
             message = "an arc without I, J, K, CR= or AR="
             raise self.refusal("GX210", message, self.any_of(line), "write its centre or radius")
