@@ -706,7 +706,7 @@ MUTATIONS = (
     Mutation(
         "siemens: frames with words are taken for their ends",
         READING,
-        "        elif name in FRAMES:\n            line.alone = item\n",
+        '        elif name in FRAMES:\n            self._one(line, "alone", item)\n',
         "        elif name in FRAMES:\n            pass\n",
         f"{CASES}[dialects/siemens/frame]",
     ),
@@ -912,6 +912,20 @@ MUTATIONS = (
         'line.named.keys() - {"CR", "AR", "TURN"}',
         'line.named.keys() - {"CR", "AR", "TURN", "RPL"}',
         f"{CASES}[dialects/siemens/arc-beside-a-turn]",
+    ),
+    Mutation(
+        "siemens: of two frames in a line the last one counts",
+        READING,
+        "if getattr(line, name) is not None:",
+        "if False:",
+        f"{CASES}[dialects/siemens/frames-in-one-line]",
+    ),
+    Mutation(
+        "siemens: the end of swivelling leaves frames of the program as they are",
+        FRAMING,
+        'name == "CYCLE800" and self.frame != Frame():',
+        'name == "CYCLE800" and False:',
+        f"{CASES}[dialects/siemens/swivelling-in-a-frame]",
     ),
     Mutation(
         "siemens: arcs that stand as they do are lines",

@@ -17,6 +17,7 @@ from gcxform_plugins.dialects.siemens.place import LINEAR, PlaceError, text_of
 from gcxform_plugins.dialects.siemens.polar import Polar
 
 FINEST = Decimal("1e-9")
+BEFORE = "write TRANS before, in a line of its own"
 
 
 class Framing(Polar):
@@ -45,6 +46,13 @@ class Framing(Polar):
         self.frame = made
         self.lose_pole()
         yield from ()
+
+    def _quiet(self, name: str, given: Sequence[str]) -> bool:
+        """Whether a call moves nothing; what ends swivelling may end a frame."""
+        quiet = super()._quiet(name, given)
+        if quiet and name == "CYCLE800" and self.frame != Frame():
+            self.refuse("CYCLE800 in a frame of the program, which it may end", None, BEFORE)
+        return quiet
 
     def outside(self, steps: bool, words: Sequence[str]) -> list[str]:
         """Return axis words as they are outside of the frame. Raises PlaceError."""

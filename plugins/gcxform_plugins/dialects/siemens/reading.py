@@ -197,6 +197,12 @@ class Statements(gx.Translator):
             raise self.refusal("GX202", "two codes of one group in a block", item)
         line.groups.add(group)
 
+    def _one(self, line: Line, name: str, item: gx.Item, value: object = None) -> None:
+        """Put into a line what stands in it once. Raises InputError where there is another one."""
+        if getattr(line, name) is not None:
+            raise self.refusal("GX202", "two things of one kind in a block", item)
+        setattr(line, name, item if value is None else value)
+
     def _modal(self, line: Line, item: gx.Item, code: str) -> None:
         group = MODAL[code]
         self._once(line, item, group)
@@ -247,7 +253,7 @@ class Statements(gx.Translator):
         elif code in ("71", "700", "710"):
             self._units(line, item, code)
         elif code in ("110", "111", "112"):
-            line.pole = code, item
+            self._one(line, "pole", item, (code, item))
         elif code == "153":
             line.machine = item
         else:
@@ -318,7 +324,7 @@ class Statements(gx.Translator):
             said[ORIENTATION[name]] = name
             self.orientation = said[0], said[1]
         elif name in FRAMES:
-            line.alone = item
+            self._one(line, "alone", item)
         elif name == "SUPA":
             line.machine = item
         elif name == "CIP" or (name == "CT" and not self.reading.stays):
@@ -337,24 +343,25 @@ class Statements(gx.Translator):
         return name.upper() in said or re.fullmatch(r"CYCLE[0-9]+", name.upper()) is not None
 
     def _switched(self, line: Line, item: gx.Item, name: str) -> None:
-        line.act = ("M128" if name == "TRAORI" else "M129"), item
+        self._one(line, "act", item, ("M128" if name == "TRAORI" else "M129", item))
 
     def _call(self, line: Line, item: gx.Item) -> None:
         name, given = cycles.arguments(item)
         if name == "TRAORI" and given in ([""], ["1"]):
             self._switched(line, item, name)
         elif name in cycles.READ:
-            line.cycle = item
+            self._one(line, "cycle", item)
             self._drilled(line, item, name, given)
         elif name in ("HOLES1", "HOLES2") and self.drilling is not None:
-            line.cycle, self.once = item, self.drilling
+            self._one(line, "cycle", item)
+            self.once = self.drilling
             try:
                 stands = [self.place.known(axis) for axis in self.plane]
                 self.holes = cycles.row(given, stands) if name[-1] == "1" else cycles.circle(given)
             except cycles.CycleError as error:
                 self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
-            line.alone = item
+            self._one(line, "alone", item)
         else:
             why = WHY.get(name, f"{name}(...) is not read")
             self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
