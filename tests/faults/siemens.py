@@ -928,6 +928,27 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/swivelling-in-a-frame]",
     ),
     Mutation(
+        "siemens: another sum of lengths leaves the length as it is",
+        EFFECTS,
+        '    "DL", "TCARR", "CUTMOD",\n',
+        "",
+        f"{CASES}[dialects/siemens/stands-a-length]",
+    ),
+    Mutation(
+        "siemens: a structure that nothing ends is none",
+        DECIDING,
+        "            self._check(self._part())\n            return\n",
+        "            return\n",
+        f"{CASES}[dialects/siemens/repeat-of-nothing]",
+    ),
+    Mutation(
+        "siemens: a point of CIP in the machine is passed over",
+        BLOCKS,
+        "arc = line.centres or line.named or line.middles",
+        "arc = line.centres or line.named",
+        f"{CASES}[dialects/siemens/supa-beside-a-point]",
+    ),
+    Mutation(
         "siemens: arcs that stand as they do are lines",
         EFFECTS,
         '    "LINEAR_ONLY": ARCS,\n',

@@ -32,8 +32,8 @@ ENDS_OF_SPLINES = frozenset(("BAUTO", "BNAT", "BTAN", "EAUTO", "ENAT", "ETAN"))
 OTHER = "other"
 """A motion that is none of the blocks'."""
 POLAR = frozenset(("AP", "RP", "ANG"))
-LENGTHS = frozenset(("TOFF", "TOFFL"))
-"""What adds to the length of the tool: a step behind it adds that, or not (SD42442)."""
+LENGTHS = frozenset(("TOFF", "TOFFL", "DL", "TCARR", "CUTMOD"))
+"""What changes the length of the tool: a step behind it adds that, or not (SD42442)."""
 MOVING = frozenset(("POS", "POSA", "POSP", "SPOSA", "LEAD", "TILT", "THETA"))
 
 

@@ -211,7 +211,8 @@ class Blocks(Contours):
         if self.edge != "0" or self.following:
             message = "SUPA with a tool length or TRAORI in force, or where that is not known"
             self.refuse(message, line.machine, hint)
-        if motion not in ("0", "1") or line.centres or line.named or self.comp or self.drilling:
+        arc = line.centres or line.named or line.middles
+        if motion not in ("0", "1") or arc or self.comp or self.drilling:
             message = "SUPA needs G0 or G1, and neither compensation nor a cycle"
             self.refuse(message, line.machine, hint)
         words = []

@@ -77,6 +77,14 @@ class Deciding(Variables):
             raise StructureError(self.line, "this belongs to no structure")
         return part
 
+    def part_here(self) -> Part | None:
+        """Return the structure that the line begins or ends, if it does. Raises InputError."""
+        try:
+            return self.structure.at.get(self.line)
+        except StructureError as why:
+            self.line = why.line
+            raise self.refusal("GX223", why.message) from None
+
     def _check(self, part: Part) -> None:
         """Take a line that only begins or ends a structure."""
 
@@ -182,6 +190,7 @@ class Deciding(Variables):
     def _repeat(self, node: Node) -> None:
         """Take REPEAT of UNTIL, and go back to the label of another as often as its P says."""
         if len(node.children) == 1:
+            self._check(self._part())
             return
         counts = self.reading.control.get(REPEATS)
         if counts is None:

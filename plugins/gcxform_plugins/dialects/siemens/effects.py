@@ -26,6 +26,7 @@ OTHERS = frozenset((
     "POS", "POSA", "POSP", "AX", "MOV", "SPOS", "SPOSA", "AP", "RP", "CR", "AR", "TURN", "RND",
     "RNDM", "CHF", "CHR", "ANG", "LEAD", "TILT", "THETA", "PW", "SD", "PL", "PO", "DISR", "DISCL",
     "OFFN", "ADIS", "ADISPOS", "FRC", "FRCM", "TOFF", "TOFFL", "TOFFR",
+    "DL", "TCARR", "CUTMOD",
 ))
 # fmt: on
 """Words of the language that move axes, or say how: they are set by nobody."""

@@ -118,7 +118,7 @@ class Programs(Learning):
         if self.kept_until > self.line or self.loops_on:
             self.loops_on = False
             return
-        part = self.structure.at.get(self.line)
+        part = self.part_here()
         self.keep_perhaps(*((self.line, self.line) if part is None else (part.first, part.last)))
 
     def _perhaps(self, items: Sequence[gx.Item], why: str = "") -> list[str]:
