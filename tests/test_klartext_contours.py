@@ -88,6 +88,9 @@ def test_a_rounding_touches_both_lines(seed):
     [
         (("L X+0 Y+0 F100", "L X+40", "RND R50", "L Y+20"), "longer"),
         (("L X+0 Y+0 F100", "L X+40", "RND R5", "L X+60"), "do not turn"),
+        (("L X+0 Y+0 F100", "L X+40", "RND R5 FU0.2", "L Y+20"), "its size, and F"),
+        (("L X+0 Y+0 F100", "L X+40", "CHF 5 FMAX", "L Y+20"), "its size, and F"),
+        (("L X+0 Y+0 F100", "L X+40", "RND R5 R6", "L Y+20"), "its size, and F"),
         (("L X+0 Y+0 F100", "L X+40", "RND R5", "L X+10"), "turn back"),
         (("L X+0 Y+0 F100", "L X+40 FMAX", "RND R5", "L Y+20"), "at the feed"),
         (("L X+0 Y+0 F100", "L X+40 Z+1", "RND R5", "L Y+20"), "in X and Y"),

@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: what stands beside the size of a corner is passed over",
+        CONTOURS,
+        "if len(sizes) > 1 or others != sizes:",
+        "if False:",
+        "tests/test_klartext_contours.py",
+    ),
+    Mutation(
         "klartext: arcs that stand as they do are lines",
         BACK,
         '    "LINEAR_ONLY": ARCS,\n',

@@ -69,6 +69,10 @@ class Contours(Moves):
         corner, self.corner = self.corner, None
         if corner is None or self.reading.stays:
             self.refuse(f"{items[0].name} behind anything but a line in X and Y", items[0])
+        sizes = [item for item in items[1:] if item.kind in ("radius", "number")]
+        others = [item for item in items[1:] if item.kind not in ("feed", "m")]
+        if len(sizes) > 1 or others != sizes:
+            self.refuse(f"{items[0].name} takes its size, and F", items[0])
         old, lost = self.feed, self.feed_lost
         said = self.said([item for item in items[1:] if item.kind in ("feed", "m")])
         if said.feed and (not old or lost):
