@@ -253,7 +253,9 @@ class Plan:
         stays = writes_back(self) and not self.copies
         reading = replace(reading, open_pecks=open_pecks, tables_stay=tables_stay)
         curves = not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)
-        return replace(reading, crosses=not same, curves=curves, stays=stays, modes_count=counts)
+        own = self.source.translator is self.target.translator and not (same or stays)
+        reading = replace(reading, curves=curves, stays=stays, asides=own)
+        return replace(reading, crosses=not same, modes_count=counts)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

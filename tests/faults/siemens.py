@@ -949,6 +949,27 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/supa-beside-a-point]",
     ),
     Mutation(
+        "siemens: what says how smooth is left out for the same control",
+        BLOCKS,
+        "if line.asides and self.reading.asides:",
+        "if False:",
+        f"{CASES}[dialects/siemens/compensated-with-asides]",
+    ),
+    Mutation(
+        "siemens: a tolerance stands beside the G64 that takes its place",
+        LINES,
+        "if any(BLENDS.search(each) for each in asides):",
+        "if False:",
+        f"{CASES}[dialects/siemens/compensated-with-asides]",
+    ),
+    Mutation(
+        "siemens: a tolerance in inches goes along with moves in millimetres",
+        READING,
+        'in ("G20", "in"):',
+        'in ("in",):',
+        f"{CASES}[dialects/siemens/compensated-with-a-tolerance-in-inches]",
+    ),
+    Mutation(
         "siemens: arcs that stand as they do are lines",
         EFFECTS,
         '    "LINEAR_ONLY": ARCS,\n',

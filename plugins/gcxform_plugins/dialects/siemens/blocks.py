@@ -54,6 +54,8 @@ class Blocks(Contours):
         except PlaceError as error:
             at = line.alone or self.any_of(line)
             raise self.refusal(error.code, error.message, at, error.hint) from None
+        if line.asides and self.reading.asides:
+            made[:1] = [f"{made[0] if made else ''} (~{' '.join(line.asides)})".lstrip()]
         if made and line.number:
             made[0] = line.number + made[0]
         return made

@@ -26,7 +26,7 @@ class Line:
               same of I J K, and I1 J1 K1
     named     CR, TURN, AR, AP, RP, ANG: number and item;  onwards: AP turns on from the last one
     corner    RND, RNDM, CHR, CHF, FRC: number and item;  behind: the blocks that cut a corner
-    others    S and M words
+    others    S and M words;  asides: what goes along in the same language, as it was programmed
     alone     what stands for nothing, and in a block of its own
     act       what follows the tip, or stops: M128, M129
     """
@@ -43,6 +43,7 @@ class Line:
     behind: list[str] = field(default_factory=list)
     feed: str = ""
     others: list[str] = field(default_factory=list)
+    asides: list[str] = field(default_factory=list)
     tool: str = ""
     changes: gx.Item | None = None
     edge: gx.Item | None = None
@@ -63,6 +64,6 @@ class Line:
         return not any(getattr(self, name) not in NOTHING for name in others)
 
 
-OF_OTHERS = frozenset(("number", "groups", "onwards", "edge_number"))
-"""What says of other fields how they were said."""
+OF_OTHERS = frozenset(("number", "groups", "onwards", "edge_number", "asides"))
+"""What says of other fields how they were said, or nothing that a block says."""
 NOTHING: tuple[object, ...] = ("", None, [], {})

@@ -17,6 +17,7 @@ from lark.exceptions import UnexpectedInput
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.shared.untouched_lines import KEPT
+from gcxform_plugins.dialects.siemens.asides import QUIET
 from gcxform_plugins.dialects.siemens.axes_of_lines import (
     ALL,
     DRILLING,
@@ -30,7 +31,6 @@ from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.lines import Lines
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
-from gcxform_plugins.dialects.siemens.reading import QUIET
 from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import code
 

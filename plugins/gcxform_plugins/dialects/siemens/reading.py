@@ -9,6 +9,7 @@ from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import cycles as cycles
+from gcxform_plugins.dialects.siemens.asides import BLENDS, INERT, QUIET, TOLERANCES
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, CORNERS, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
@@ -18,8 +19,6 @@ MODAL = {
     **dict.fromkeys(("93", "94", "95"), "feed"),
     **dict.fromkeys(("40", "41", "42"), "comp"),
 }
-INERT = frozenset(("601", "602", "603", "290", "450", "451"))
-BLENDS = frozenset(("64", "641", "642", "643", "644", "645"))
 WORK = {"54": "G54", "55": "G55", "56": "G56", "57": "G57", "505": "G58", "506": "G59"}
 PLANES = {"17": "XY", "18": "ZX", "19": "YZ"}
 REASONS = {
@@ -32,15 +31,6 @@ REASONS = {
     "291": "G291 switches to another language",
     "500": "G500 leaves basic frames in force, which only the control knows",
 }
-# fmt: off
-QUIET = frozenset((
-    "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
-    "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
-    "ORISON", "ORISOF", "RTLION", "RTLIOF",
-))
-# fmt: on
-"""Commands that move nothing and change no word behind them."""
-TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
 ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
 WHY = {
     "CT": "CT is an arc whose centre follows from the move before",
@@ -187,7 +177,9 @@ class Statements(gx.Translator):
             self._once(line, item, "work")
             line.codes.append(WORK[code])
             line.work = WORK[code], item
-        elif code not in INERT:
+        elif code in INERT:
+            line.asides.append(f"G{code}")
+        else:
             self._rare_code(line, item, code)
 
     def _once(self, line: Line, item: gx.Item, group: str) -> None:
@@ -249,6 +241,7 @@ class Statements(gx.Translator):
         elif code in ("60", "9"):
             line.codes.append(f"G{code}")
         elif code in BLENDS:
+            line.asides += [f"G{code}"] if code != "64" else []
             line.codes.append("G64")
         elif code in ("71", "700", "710"):
             self._units(line, item, code)
@@ -312,11 +305,17 @@ class Statements(gx.Translator):
             line.corner[name] = (item.numbers[0], item)
         elif name not in TOLERANCES:
             self.refuse(f"{name}= is not read", item)
+        else:
+            if self.reading.asides and (self.unit or self.reading.units) in ("G20", "in"):
+                self.refuse(f"{name}= in inches, beside moves that are written anew", item)
+            line.asides.append(f"{name}={item.numbers[0]}")
 
     # --- commands ---
 
     def _command(self, line: Line, item: gx.Item) -> None:
         name = item.name
+        if name in QUIET or name in ORIENTATION:
+            line.asides.append(name)
         if name in QUIET:
             return
         if name in ORIENTATION:

@@ -1,0 +1,19 @@
+"""What says how fast, how smooth, and how near to a corner: it moves nothing.
+
+To another control it is left out. To the same one, of which all moves are written anew, it goes
+along as it was programmed, in a comment of its block.
+"""
+
+from __future__ import annotations
+
+INERT = frozenset(("601", "602", "603", "290", "450", "451"))
+BLENDS = frozenset(("64", "641", "642", "643", "644", "645"))
+# fmt: off
+QUIET = frozenset((
+    "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
+    "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
+    "ORISON", "ORISOF", "RTLION", "RTLIOF",
+))
+# fmt: on
+"""Commands that move nothing and change no word behind them."""
+TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
