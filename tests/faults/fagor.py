@@ -29,6 +29,20 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "fagor: what says how near to a corner is left out for the same control",
+        BLOCKS,
+        "if head in tables.INERT and self.reading.asides:",
+        "if False:",
+        f"{CASE}compensated-with-asides]",
+    ),
+    Mutation(
+        "fagor: corners half rounded are rounded",
+        BLOCKS,
+        'words.append("(~G50)")',
+        "pass",
+        f"{CASE}compensated-with-asides]",
+    ),
+    Mutation(
         "fagor: what nobody has read is made of lines",
         PROGRAMS,
         "self.kept_lines[-1][0] + 1 if self.tied else self.own, self.own",

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables as tables
 from gcxform_plugins.dialects.fagor.places import Places, code_of
+from gcxform_plugins.dialects.fagor.structure import code
 
 PLANES = frozenset({"G17", "G18", "G19"})
 END = frozenset({"M2", "M30"})
@@ -20,6 +21,7 @@ NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only 
 IN_MACHINE = frozenset(("", "G0", "G1", "G90", "M3", "M4", "M5", "M7", "M8", "M9"))
 """Codes that are read in lines to places of the machine."""
 WHOLE = re.compile(r"[0-9]+\Z")
+INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
 
 
 class Blocks(gx.Translator):
@@ -128,6 +130,8 @@ class Blocks(gx.Translator):
             if sum(item.name in {*"IJK"} for item in items) != 2:
                 self.refuse("G6 is read with both words of a centre", codes["G6"])
             words, after = ["G90.1", *words], ["G91.1", *after]
+        if "G50" in codes and self.reading.asides:
+            words.append("(~G50)")
         if "G60" in codes:
             after += self._corner_again(codes["G60"])
         yield from [" ".join(words)] if words else []
@@ -314,6 +318,11 @@ class Blocks(gx.Translator):
         if head == "#KIN" and rest == ["ID"]:
             self._kinematics(item, inside)
             return []
+        if head in tables.INERT and self.reading.asides:
+            text = code(self.lines[self.line])
+            if "CONTERROR" in text.upper() and any(map(INCHES.search, self.lines)):
+                self.refuse("a contour error beside G70 and moves that are written anew", item)
+            return [f"(~{text[text.index('#') :].strip()})"]
         if head in tables.INERT or (head in tables.OFF and rest[:1] == ["OFF"]):
             return []
         what = tables.STATEMENTS.get(head, "it is not known here")

@@ -73,6 +73,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | `#CS`, `#ACS`, `#CSROT`, `#TOOL ORI`, `#SELECT ORI` | inclined planes: refused, but for OFF |
 | `#TRAFO ON` | of ISG and Beckhoff; there D names a tool, and G8 and G9 are no arcs: refused |
 | `#HSC`, `#ROUNDPAR`, `#SLOPE`, `#FLUSH`, `#MSG` | move nothing, and are left out |
+| these and G50, where moves are written anew for a Fagor | they go along |
 | `#TIME`, and all else behind `#` | refused |
 | `;`, `( )`, `(` to the end of the line | comments |
 | NR, #RPT, #MCALL, #EXEC | refused |

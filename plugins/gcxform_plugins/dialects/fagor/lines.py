@@ -24,6 +24,9 @@ CODES = {
 SAME = tables.PLAIN | tables.WORK | tables.COMP | {"G90", "G91"}
 CORNERS = frozenset(("G61", "G64"))
 """How corners are taken, without how far (P, Q): the control has it elsewhere."""
+ASIDE = "~"
+"""What a comment begins with that goes along as it was programmed, from the same language."""
+SEMI_ROUNDED = "G50"
 LONGEST = 14  # characters of the name of a program [Q 45]
 ENDS = ("M2", "M30")
 
@@ -53,8 +56,12 @@ class Lines(gx.Speller):
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
-        comments, words = gx.Speller.parts(block)
-        found = [*self._said(words)] if words else []
+        told, words = gx.Speller.parts(block)
+        asides = [each[1:] for each in told if each.startswith(ASIDE)]
+        comments = [each for each in told if not each.startswith(ASIDE)]
+        if SEMI_ROUNDED in asides:
+            words = [each for each in words if each != ("G", "64")]
+        found = [*asides, *self._said(words)]
         if comments:
             text = self.comment + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
