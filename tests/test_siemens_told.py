@@ -10,9 +10,11 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import axes_of
 from gcxform_plugins.passes.absolute import Absolute
 
 import gcxform as gx
+from gcxform.flow.translated import translated
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
 
 SIEMENS = default_registry().dialect("siemens")
 HEAD = "G710 G17 G90 G94\nG0 X1 Y2 Z3 C5\nG1 F100\n"
@@ -109,3 +111,18 @@ def test_it_is_repeated_in_each_pass_of_a_loop_around_it():
     text = f"R1=0\nWHILE R1<2\nR1=R1+1\n{SECTION}REPEAT ROW\nENDWHILE\n"
     found = ends(text, control={"section-repeats": "further"})
     assert [end[0] for end in found] == [0.0, 1.0, 2.0] * 2
+
+
+def test_a_comment_of_another_language_is_nothing_that_goes_along():
+    text = b"G21 G90 G17 G94\n(\x01G642)\nG0 X1 Y2\nM2\n"
+    written = Pipeline(default_registry().dialect("linuxcnc"), SIEMENS, (Absolute(),), Reading())
+    assert b"\n; \x01G642\n" in written.run(text).text
+
+
+@pytest.mark.parametrize("said", ["; \x01G642", 'MSG("\x01G642"<<1) ;', "X1 ; \x01SOFT"])
+def test_a_comment_of_the_same_language_is_nothing_that_goes_along_either(said):
+    source = Source.of_bytes(f"G710 G17 G90 G94 G0\n{said}\nM30\n".encode("latin-1"))
+    blocks = translated(source, SIEMENS, Reading(asides=True)).text.decode("latin-1").splitlines()
+    lines = SIEMENS.translator.speller("A", False)
+    lines.asides = True
+    assert not {*lines.heard(blocks[1])[0]} & {"G642", "SOFT"}

@@ -25,15 +25,16 @@ def spelled_out(
     file: str,
     inch: bool,
     inert: frozenset[str] = frozenset(),
+    asides: bool = False,
 ) -> tuple[bytes, list[int], Counter[str]]:
     """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
     `source` are lines of the program, from 0, of which the blocks are. `inert` are M codes of the
-    target that leave its axes where they stand. Raises InputError for a
-    block that cannot be said.
+    target that leave its axes where they stand; `asides`: whether a translator of the language has
+    put into comments what goes along. Raises InputError for a block that cannot be said.
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
-    speller.inert = inert
+    speller.inert, speller.asides = inert, asides
     lines, of = speller.opening(), [source[0] if source else 0]
     of *= len(lines)
     for block, line in zip(blocks, source, strict=True):

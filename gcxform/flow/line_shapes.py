@@ -21,6 +21,7 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.items import Item, Part, part_of
 from gcxform.flow.learned import CODE, DIGITS, Ahead, Slots
+from gcxform.flow.speller import ASIDE
 from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
@@ -29,7 +30,7 @@ from gcxform.values import dataclass
 COMMENT = "comment"
 LATELY = 4096  # shapes with numbers in names and comments that are kept
 AHEAD, SOME = 512, 64  # lines that are split at once, and how many of such parts are kept
-BRACKETS = str.maketrans("()", "[]")
+BRACKETS = str.maketrans(f"(){ASIDE}", "[] ")
 
 
 @dataclass(eq=False, slots=True)
@@ -178,7 +179,7 @@ class LineShapes(ABC):
 
     def _shape_of(self, text: str, numbers: Sequence[str], parts: tuple[Part, ...]) -> Shape:
         said = [part for part in parts if part.kind == COMMENT]
-        comments = "".join(_comment(text[slice(*part.place)]) for part in said)
+        comments = "".join(self.comment(text[slice(*part.place)]) for part in said)
         rest = [part for part in parts if part.kind != COMMENT]
         slots = [slot for part in rest for slot in part.slots]
         pairs = all(len(part.names) == 1 and len(part.slots) <= 1 for part in rest)
@@ -191,6 +192,10 @@ class LineShapes(ABC):
             template = " ".join([*words, comments.replace("%", "%%")]).rstrip()
         routine = not said and self.routine([part.item(numbers) for part in rest], text)
         return Shape(parts, comments, template, routine, self._slots(rest))
+
+    def comment(self, text: str) -> str:
+        """Return the comment of a block for one of the language."""
+        return _comment(text)
 
     def _slots(self, parts: Sequence[Part]) -> Slots | None:
         """Return what can be learnt of lines with these parts."""

@@ -11,6 +11,10 @@ from typing import ClassVar
 COMMENT = re.compile(r"\(([^()]*)\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 BLANKS = str.maketrans("", "", " \t")
+ASIDE = "\x01"
+"""What a comment begins with that is none, but goes along as it was programmed, to a speller that
+hears `asides`: a translator of the same language says them, and takes the sign out of comments."""
+HIDDEN, SHOWN = str.maketrans("()", "\x02\x03"), str.maketrans("\x02\x03", "()")
 
 
 class UnspeakableError(Exception):
@@ -28,10 +32,12 @@ class Speller(ABC):
 
     `comment` begins a line that says nothing to the control, wherever one may stand behind the end
     of a program; nothing where none may. `inert` are M codes that leave the axes where they stand.
-    `says_unit`: programs begin with the unit of their lengths.
+    `says_unit`: programs begin with the unit of their lengths. `asides`: what goes along as it was
+    programmed stands in comments, which nobody else than a translator can have written.
     """
 
     inert: frozenset[str] = frozenset()
+    asides: bool = False
 
     comment: ClassVar[str] = ""
     says_unit: ClassVar[bool] = False
@@ -48,6 +54,19 @@ class Speller(ABC):
         comments = [each.strip() for each in COMMENT.findall(block)]
         bare = COMMENT.sub("", block).partition(";")[0]
         return comments, WORD.findall(bare.translate(BLANKS).upper())
+
+    @staticmethod
+    def aside(text: str) -> str:
+        """Return what goes along as it was programmed, in a block."""
+        return f"({ASIDE}{text.translate(HIDDEN)})"
+
+    def heard(self, block: str) -> tuple[list[str], list[str], list[tuple[str, str]]]:
+        """Return what goes along as it was programmed, the other comments, and the words."""
+        comments, words = self.parts(block)
+        if not self.asides:
+            return [], comments, words
+        asides = [each[1:].translate(SHOWN) for each in comments if each.startswith(ASIDE)]
+        return asides, [each for each in comments if not each.startswith(ASIDE)], words
 
     @abstractmethod
     def lines(self, block: str) -> list[str]:

@@ -76,7 +76,7 @@ class Reading:
     stays         whether it is to be written for the same one by passes that keep positions: then
                   what is not understood may stay as it stands
     asides        whether it is to be written whole in the language that it is in: what only says
-                  how fast, or how smooth, goes along, in comments that begin with a tilde
+                  how fast, or how smooth, goes along, in comments that nobody else can write
     modes_count   whether what is written depends on units, plane and feed mode: not where words of
                   the same coordinates are said in another way
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")

@@ -130,7 +130,13 @@ class SpelledOut:
         self._refuse_open_unit(blocks)
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
-            blocks, lines, self.kind, self.given.name, inch, self.plan.inert
+            blocks,
+            lines,
+            self.kind,
+            self.given.name,
+            inch,
+            self.plan.inert,
+            self.plan.machine_reading.asides,
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())

@@ -38,7 +38,7 @@ MUTATIONS = (
     Mutation(
         "fagor: corners half rounded are rounded",
         BLOCKS,
-        'words.append("(~G50)")',
+        'words.append(gx.Speller.aside("G50"))',
         "pass",
         f"{CASE}compensated-with-asides]",
     ),

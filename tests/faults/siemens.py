@@ -753,6 +753,21 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/jump-back]",
     ),
     Mutation(
+        "siemens: comments of other languages go along as commands",
+        "gcxform/flow/speller.py",
+        "        if not self.asides:",
+        "        if False:",
+        "tests/test_siemens_told.py::test_a_comment_of_another_language_is_nothing_that_goes_along",
+    ),
+    Mutation(
+        "siemens: a comment may have the sign of what goes along",
+        "gcxform/flow/line_shapes.py",
+        'str.maketrans(f"(){ASIDE}", "[] ")',
+        'str.maketrans("()", "[]")',
+        "tests/test_siemens_told.py::"
+        "test_a_comment_of_the_same_language_is_nothing_that_goes_along_either",
+    ),
+    Mutation(
         "siemens: a compiled line sets nothing",
         "gcxform/flow/translation.py",
         "        done()\n",

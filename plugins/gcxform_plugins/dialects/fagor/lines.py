@@ -24,8 +24,6 @@ CODES = {
 SAME = tables.PLAIN | tables.WORK | tables.COMP | {"G90", "G91"}
 CORNERS = frozenset(("G61", "G64"))
 """How corners are taken, without how far (P, Q): the control has it elsewhere."""
-ASIDE = "~"
-"""What a comment begins with that goes along as it was programmed, from the same language."""
 SEMI_ROUNDED = "G50"
 LONGEST = 14  # characters of the name of a program [Q 45]
 ENDS = ("M2", "M30")
@@ -56,9 +54,7 @@ class Lines(gx.Speller):
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
-        told, words = gx.Speller.parts(block)
-        asides = [each[1:] for each in told if each.startswith(ASIDE)]
-        comments = [each for each in told if not each.startswith(ASIDE)]
+        asides, comments, words = self.heard(block)
         if SEMI_ROUNDED in asides:
             words = [each for each in words if each != ("G", "64")]
         found = [*asides, *self._said(words)]

@@ -55,10 +55,17 @@ class Blocks(Contours):
             at = line.alone or self.any_of(line)
             raise self.refusal(error.code, error.message, at, error.hint) from None
         if line.asides and self.reading.asides:
-            made[:1] = [f"{made[0] if made else ''} (~{' '.join(line.asides)})".lstrip()]
+            made[:1] = [
+                f"{made[0] if made else ''} {gx.Speller.aside(' '.join(line.asides))}".lstrip()
+            ]
         if made and line.number:
             made[0] = line.number + made[0]
         return made
+
+    def comment(self, text: str) -> str:
+        """Return the comment of a block for one of a line, or what the operator is told by it."""
+        told = self.reading.asides and text[:1] in "Mm"
+        return gx.Speller.aside(text) if told else super().comment(text)
 
     def _check_feed(self, line: Line) -> None:
         """Refuse a cut behind a cycle with feeds of its own, until F is programmed again."""

@@ -23,7 +23,7 @@ from gcxform_plugins.dialects.siemens.variables import AXES
 COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
-BRACKETS = str.maketrans("()", "[]")
+BRACKETS = str.maketrans("()\x01", "[] ")
 UNTOLD = "messages of which only the control knows the text are left out"
 AS_THEY_STAND = frozenset(("word", "bare", "label", "sequence", "call", "text_call"))
 
@@ -112,7 +112,8 @@ class Computing(Deciding):
             tree = self.tree_of(self.lines[self.line])
             call = next(node for node in tree.children if rule_of(node) == "call")
             slots = next(node for node in call.children if rule_of(node) == "arguments").children
-            return [f"({self.worth.text(self.worth.of(slots[0].children[0])).translate(BRACKETS)})"]
+            told = self.worth.text(self.worth.of(slots[0].children[0])).translate(BRACKETS)
+            return [self.comment(f'MSG("{told}")') if self.reading.asides else f"({told})"]
         except (UnexpectedInput, IndexError):
             self.refuse("this message is not read")
         except v.NoValueError as why:

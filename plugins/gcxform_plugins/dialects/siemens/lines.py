@@ -32,9 +32,6 @@ SAME = frozenset(
     )
 )
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
-ASIDE = "~"
-"""What a comment begins with that goes along as it was programmed, from the same language."""
-SHOWN = re.compile(r'MSG\[(?:"[^"]*")?\]')
 BLENDS = re.compile(r"G64[1-5]")
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
 OWN = (17, 128, 129, 9000)
@@ -59,10 +56,7 @@ class Lines(gx.Speller):
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
-        told, words = gx.Speller.parts(block)
-        asides = [each[1:] for each in told if each.startswith(ASIDE)]
-        comments = [each for each in told if not (each.startswith(ASIDE) or SHOWN.fullmatch(each))]
-        asides += [f"MSG({each[4:-1]})" for each in told if SHOWN.fullmatch(each)]
+        asides, comments, words = self.heard(block)
         if any(BLENDS.search(each) for each in asides):
             words = [each for each in words if each != ("G", "64")]
         slash = SLASH.match(block)
