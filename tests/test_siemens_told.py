@@ -85,7 +85,7 @@ SECTION = "G0 X0\nROW: G1 X=IC(1)\n"
         ("REPEAT ROW ROW", "of the ways of REPEAT"),
         ("REPEAT ROW X2", "of the ways of REPEAT"),
         ("REPEAT ROW P=0", "REPEAT for 0 times"),
-        ("REPEAT ROW P=1.5", "a whole number"),
+        ("REPEAT ROW P=1.5", "P of a number that is not whole"),
         ("REPEAT UNSEEN", "no UNSEEN before this"),
         ("REPEAT LATER\nLATER: X5", "no LATER before this"),
         ("ROW: X7\nREPEAT ROW", "or several"),

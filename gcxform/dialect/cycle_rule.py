@@ -106,11 +106,10 @@ class CycleRule:
     rises_first     from below R the tool rises to R before it goes to the hole; the initial level
                     then counts as R. Under G98 it goes to the next hole at the initial level, from
                     wherever it stands at or below R
-    keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given
+    keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given.
+                    Where no P has been, how long it dwells is not known, and its block stays
     keeps_dwell     the last P stays for good, for cycles that take P but do not need it; 0 s before
                     the first one of the program
-    open_dwell      a cycle that needs P is executed without as well: how long it dwells then is not
-                    known, and its block stays
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
                     otherwise it is refused
     alone           the setting of the control that says "drills" if a block drills which names no
@@ -129,7 +128,6 @@ class CycleRule:
     rises_first: bool = False
     keeps_words: bool = False
     keeps_dwell: bool = False
-    open_dwell: bool = False
     stores: bool = False
     alone: str = ""
     one_plane: bool = True

@@ -188,12 +188,17 @@ class Copying:
     def _refuse_moved_before(self, pieces: Pieces) -> None:
         """Refuse to move Z beside others where a tool length has moved it before, by itself.
 
-        Its block does not name Z there, or is a cycle that begins at the level where Z stands.
+        Its block does not name Z there, or is a cycle that begins at the level where Z stands. A
+        way home from where nothing is known may begin anywhere.
         """
-        first = pieces.expanded_line[self.path.block] & (self.path.nth == 0)
+        path = self.path
+        first = pieces.expanded_line[path.block] & (path.nth == 0)
         named = self.positions.programmed[:, Z] & ~first
-        stands = np.isnan(self.path.start[:, Z]) & np.isfinite(self.path.end[:, Z])
-        rows = np.flatnonzero(self.positions.write[:, Z] & ~named & stands & self.path.is_free)
+        stands = np.isnan(path.start[:, Z]) & np.isfinite(path.end[:, Z])
+        nowhere = np.isnan(path.start).all(axis=1) & ~self.positions.programmed.any(axis=1)
+        rows = np.flatnonzero(
+            self.positions.write[:, Z] & ~named & stands & ~nowhere & path.is_free
+        )
         manner = self.task.manner
         there, here = (each.tool_rule.length_may_move for each in (manner.target, manner.source))
         if here and not there and len(rows):

@@ -64,15 +64,15 @@ FAULTS = (
     (
         "a cycle that dwells nobody knows how long is written out",
         "gcxform/modal/cycles/checks.py",
-        'letter == "P" and rule.open_dwell and self.open_pecks',
-        'letter == "P" and rule.open_dwell',
+        'letter == "P" and rule.keeps_words and self.open_pecks',
+        'letter == "P" and rule.keeps_words',
         f"{CASE}[dialects/haas/cycle-without-dwell-written-out]",
     ),
     (
         "a cycle without P is refused where it stays",
-        "plugins/gcxform_plugins/dialects/fanuc.py",
-        "open_dwell=True",
-        "open_dwell=False",
+        "gcxform/modal/cycles/checks.py",
+        '            missing &= not (letter == "P" and rule.keeps_words and self.open_pecks)\n',
+        "",
         f"{CASE}[dialects/haas/cycle-without-dwell]",
     ),
     (

@@ -127,7 +127,7 @@ class Checks:
             left_open = self._listed(lambda one: one.open_words, letter)
             yield ~unset & left_open, open_, "write G80 before it"
             missing = self.drilled & unset & self._listed(lambda one: one.needs, letter)
-            missing &= not (letter == "P" and rule.open_dwell and self.open_pecks)
+            missing &= not (letter == "P" and rule.keeps_words and self.open_pecks)
             yield missing, f"{{code}} without {letter}", "give it in this block"
         yield calls.p < 0, "{code} with a negative P", ""
         pecks = self._with_code([code for code, one in self.cycles.items() if one.pecks])

@@ -114,7 +114,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, open_dwell=True, stores=True, repeats="K")
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):

@@ -228,7 +228,7 @@ class Deciding(Variables):
         """Return what P of a REPEAT says. Raises InputError, NoValueError."""
         nodes: list[Any] = node.children
         said = next((each for each in nodes if rule_of(each) == "times"), None)
-        number = 1.0 if said is None else self._whole(said.children[-1])
+        number = 1.0 if said is None else self._whole(said.children[-1], "P")
         if not 1 <= number <= MOST:
             self.refuse(f"REPEAT for {number:g} times")
         return number
@@ -257,21 +257,21 @@ class Deciding(Variables):
 
     def _case(self, node: Node) -> None:
         parts = [c for c in node.children if not (isinstance(c, Token) and c.type.endswith("CASE"))]
-        value = self._whole(parts[0])
+        value = self._whole(parts[0], "CASE")
         for each in parts[1:]:
             if isinstance(each, Tree) and rule_of(each) == "choice":
-                if self._whole(each.children[0]) == value:
+                if self._whole(each.children[0], "CASE") == value:
                     self._jump(str(each.children[1]), each.children[2])
                     return
             elif isinstance(each, Tree) and rule_of(each) == "destination":
                 self._jump(str(parts[parts.index(each) - 1]), each)
                 return
 
-    def _whole(self, node: Any) -> float:
+    def _whole(self, node: Any, what: str) -> float:
         """Return a number that is whole. Raises NoValueError for what would be rounded."""
         value = self.worth.number(node)
         if value != int(value):
-            raise v.NoValueError("this has to be a whole number", "write ROUND(...)")
+            raise v.NoValueError(f"{what} of a number that is not whole", "write ROUND(...)")
         return value
 
     def _return(self, node: Node) -> None:
