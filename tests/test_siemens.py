@@ -254,7 +254,7 @@ class Builder:
                 )
             )
         elif kind == "o":
-            self.put(self.draw.choice(["S1000 M3", "M8", "G4 F1.5", "CYCLE800()", "M5 M9"]))
+            self.put(self.draw.choice(["S1000 M3", "M8", "G4 F1.5", "FFWOF", "M5 M9"]))
 
 
 @pytest.mark.parametrize("seed", some(300))

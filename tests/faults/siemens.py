@@ -768,6 +768,20 @@ MUTATIONS = (
         "test_a_comment_of_the_same_language_is_nothing_that_goes_along_either",
     ),
     Mutation(
+        "siemens: what stands beside an arc is gone with it",
+        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        "item.name in WORDS and not inert",
+        "item.name in WORDS",
+        f"{CASES}[segment/siemens-own-arcs-and-more]",
+    ),
+    Mutation(
+        "siemens: rotary axes stay where swivelling ends",
+        FRAMING,
+        "        self.place.lose(turned, shifted=False)\n",
+        "",
+        f"{CASES}[dialects/siemens/swivel-ended]",
+    ),
+    Mutation(
         "siemens: a compiled line sets nothing",
         "gcxform/flow/translation.py",
         "        done()\n",

@@ -84,8 +84,8 @@ class Blocks(Contours):
             else:
                 yield from self.set_frame(line)
             return
-        if line.alone is not None and (line.axes or line.centres or line.codes or line.motion):
-            self.refuse("this stands in a block of its own", line.alone, "give it its own line")
+        if line.alone is not None:
+            self._take_alone(line, line.alone)
         if line.dwell is not None or line.act is not None or line.cycle is not None:
             yield from self._alone(line)
             return
@@ -104,6 +104,12 @@ class Blocks(Contours):
             yield from self._holes(self.drilling)
 
     # --- lines of one thing ---
+
+    def _take_alone(self, line: Line, item: gx.Item) -> None:
+        if line.axes or line.centres or line.codes or line.motion:
+            self.refuse("this stands in a block of its own", item, "give it its own line")
+        if item.name.upper().startswith("CYCLE800"):
+            self.end_swivel()
 
     def _check_alone(self, line: Line) -> None:
         """Refuse a frame or a pole beside what is no word of it (PM 631, F 118)."""

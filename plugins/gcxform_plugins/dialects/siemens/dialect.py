@@ -71,6 +71,7 @@ kept as it stands, with all that is lost behind it.
 | all three, where moves are written anew for the same control | they go along | |
 | CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
 | CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
+| CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | CYCLE89, CYCLE85 | out at the feed, at RFF; behind CYCLE85 F must be programmed again | C81 |
 | CYCLE83 | alike strokes; only with VARI, and DIS1 or VRT, and without DAM | C81 |

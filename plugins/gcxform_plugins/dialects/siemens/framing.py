@@ -13,7 +13,7 @@ from decimal import Decimal
 from gcxform_plugins.dialects.siemens.arcs import CENTRES
 from gcxform_plugins.dialects.siemens.frames import NEAR, ONE, PLAIN, ZERO, Frame, frame_of
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, Line
-from gcxform_plugins.dialects.siemens.place import LINEAR, PlaceError, text_of
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 from gcxform_plugins.dialects.siemens.polar import Polar
 
 FINEST = Decimal("1e-9")
@@ -53,6 +53,12 @@ class Framing(Polar):
         if quiet and name == "CYCLE800" and self.frame != Frame():
             self.refuse("CYCLE800 in a frame of the program, which it may end", None, BEFORE)
         return quiet
+
+    def end_swivel(self) -> None:
+        """Let go of rotary axes that are turned: whether they turn back is the builder's choice."""
+        turned = set() if self.place.unturned() else self.place.named & {*ROTARY}
+        self.place.lose(turned, shifted=False)
+        self.loses |= turned
 
     def outside(self, steps: bool, words: Sequence[str]) -> list[str]:
         """Return axis words as they are outside of the frame. Raises PlaceError."""

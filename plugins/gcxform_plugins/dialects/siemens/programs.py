@@ -27,11 +27,10 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import (
     words_of,
 )
 from gcxform_plugins.dialects.siemens.effects import AGAINST, effect_of
-from gcxform_plugins.dialects.siemens.learning import Learning
+from gcxform_plugins.dialects.siemens.in_place import InPlace
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.lines import Lines
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
-from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import code
 
 DECIDES = re.compile(
@@ -67,10 +66,6 @@ KEEPS = (
 )
 MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
 UNREAD = gx.Item("flow", ("",), (), (0, 0))
-STEPPED = re.compile(  # it begins with letters that may be looked for one by one
-    r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
-    r"|(?<=[Gg])(?<![A-Za-z0-9_][Gg])[ \t]*0*91(?![0-9.]))"
-)
 KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
 """Commands and M codes that move nothing."""
 FEED_MODES = frozenset(("93", "94", "95"))
@@ -81,14 +76,13 @@ STATE = (
 )
 
 
-class Programs(Learning):
+class Programs(InPlace):
     """Executes the lines of a program for a SINUMERIK."""
 
     writes = True
     speller = Lines
     kept = KEPT
     against = AGAINST
-    stepped = STEPPED
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError."""
@@ -278,14 +272,6 @@ class Programs(Learning):
             self.tool = self.waiting = self.edge = None
         if opaque:
             self.lose_called(self.lines[self.line])
-
-    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
-        """Return a line that stands for new blocks; None where that is not known."""
-        return spelled(self.lines[line], blocks)
-
-    def counts(self, line: str) -> bool:
-        """Whether a line has a word that counts from where its axis stands."""
-        return STEPPED.search(code(line)) is not None
 
     def closing(self) -> Iterator[str]:
         """Say which lines are kept."""
