@@ -776,9 +776,9 @@ MUTATIONS = (
     ),
     Mutation(
         "siemens: rotary axes stay where swivelling ends",
-        FRAMING,
-        "        self.place.lose(turned, shifted=False)\n",
-        "",
+        BLOCKS,
+        "            self.end_swivel()\n",
+        "            pass\n",
         f"{CASES}[dialects/siemens/swivel-ended]",
     ),
     Mutation(
