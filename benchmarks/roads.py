@@ -73,7 +73,7 @@ ROADS = (
     run("pass arcs", "chords", 3.8, "arcs tolerance=0.005"),
     Road("compare", "straight", ("compare", "-f", "linuxcnc"), 2.8, beside="nearby"),
     Road("info", "straight", ("info", "-f", "linuxcnc"), 1.6),
-    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 9.0, GOAL,
+    Road("siemens", "siemens", ("run", "-q", "-f", "siemens", "-x", "absolute"), 7.0, GOAL,
          "siemens-twin"),
     plain("siemens", "siemens", 4.8),
     plain("klartext", "heidenhain", 4.2),
