@@ -131,7 +131,8 @@ class Copying:
         wrong = union(wrong, points[other])
         if not len(wrong):
             return
-        form = Form(int(self.path.form[np.searchsorted(self.path.block, wrong[0])]))
+        forms = self.path.form[self.path.block == wrong[0]]
+        form = Form(int(forms[0])) if len(forms) else Form.CYCLE  # it stores where one drills
         hint = HINTS.get(
             form, "leave out the pass that would change it, or let the CAM write it so"
         )

@@ -31,6 +31,10 @@ PLACES = (Form.HOME, Form.MACHINE)
 """Forms whose axis words may be converted where they stand."""
 
 
+STORED = frozenset("RZPQ")
+"""Words of which a cycle remembers what they say, by a block that drills nothing (K0)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pieces:
     """The pieces of a window, in order.
@@ -79,7 +83,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     """Return the pieces of a window."""
     path, cycle = task.path, task.read.modes.cycle != CYCLE_OFF
     count = np.bincount(path.block, minlength=task.read.live)
-    special = _special(task, taps)
+    special = _special(task, taps) | _stored(task, cycle & (count == 0))
     expanded = cycle & ~special & ~taps.lines & ~_stores_taps(task, count) & _in_moves(task)
     opens, closes = around(expanded)
     expanded |= _of_nurbs(task)
@@ -146,6 +150,19 @@ def _stores_taps(task: Task, count: Ints) -> Flags:
     They may say where the taps behind them go (K0), which stay cycles.
     """
     return np.asarray(np.isin(task.read.modes.cycle, list(TAPPING)) & (count == 0))
+
+
+def _stored(task: Task, idle: Flags) -> Flags:
+    """Return the lines (live,) that store by steps where a cycle drills which stays.
+
+    They are written as they stand, or refused. `idle` lines move nothing.
+    """
+    if task.manner.crossing or task.manner.expands:
+        return np.zeros_like(idle)
+    says = [not STORED.isdisjoint(meaning.slots) for meaning in task.table.meanings]
+    turned = task.path.blocks.incremental != task.read.path.blocks.incremental
+    stores = np.array(says, np.bool_)[task.shape[: len(idle)]]
+    return np.asarray(idle & turned & stores)
 
 
 def _of_nurbs(task: Task) -> Flags:

@@ -203,6 +203,13 @@ MUTATIONS = (
         for name, old, new in TOGETHER
     ),
     Mutation(
+        "writing: what a cycle stores by steps is dropped where steps become positions",
+        "gcxform/emit/pieces.py",
+        "np.asarray(idle & turned & stores)",
+        "np.zeros_like(idle)",
+        "tests/test_corpus.py::test_case[absolute/stored-by-steps]",
+    ),
+    Mutation(
         "cycles: what a tap stores is gone with its cycle",
         "gcxform/emit/pieces.py",
         " & ~_stores_taps(task, count)",
