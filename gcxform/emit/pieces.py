@@ -157,7 +157,7 @@ def _stored(task: Task, idle: Flags) -> Flags:
 
     They are written as they stand, or refused. `idle` lines move nothing.
     """
-    if task.manner.crossing or task.manner.expands:
+    if task.manner.crossing or task.manner.expands or not idle.any():
         return np.zeros_like(idle)
     says = [not STORED.isdisjoint(meaning.slots) for meaning in task.table.meanings]
     turned = task.path.blocks.incremental != task.read.path.blocks.incremental

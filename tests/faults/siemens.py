@@ -770,9 +770,16 @@ MUTATIONS = (
     Mutation(
         "siemens: what stands beside an arc is gone with it",
         "plugins/gcxform_plugins/dialects/siemens/in_place.py",
-        "item.name in WORDS and not inert",
-        "item.name in WORDS",
-        f"{CASES}[segment/siemens-own-arcs-and-more]",
+        '(item.numbers[0].lstrip("0") or "0") in CODES',
+        "True",
+        f"{CASES}[segment/siemens-own-arcs-blend]",
+    ),
+    Mutation(
+        "siemens: which way a rotary axis turns is gone with an arc",
+        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        '"XYZIJK", "CR"',
+        '"XYZABCIJK", "CR"',
+        f"{CASES}[segment/siemens-own-arcs-turned]",
     ),
     Mutation(
         "siemens: rotary axes stay where swivelling ends",

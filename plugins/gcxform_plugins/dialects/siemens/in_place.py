@@ -6,7 +6,6 @@ import re
 from collections.abc import Sequence
 
 import gcxform as gx
-from gcxform_plugins.dialects.siemens.asides import INERT
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import code
@@ -20,8 +19,12 @@ HEAD = re.compile(
     re.IGNORECASE,
 )
 NUMBER = re.compile(r"N[0-9]+[ \t]+")
-WORDS = frozenset((*"NGFMSXYZABCIJK", "CR", "AR", "TURN", "I1", "J1", "K1", "CIP"))
-"""Words of which blocks say all that there is."""
+CODES = frozenset(("0", "1", "2", "3", "9", "17", "18", "19", "40", "60", "64", "90", "91", "94"))
+"""G codes of which blocks say all that there is: not how near to a corner (G642), nor F (G71)."""
+PLAIN = frozenset("NFMS")
+PLACES = frozenset((*"XYZIJK", "CR", "AR", "TURN", "I1", "J1", "K1", "CIP"))
+"""Words of which they do, too; the second also where they are computed. Of a rotary axis they say
+where it turns to, and not which way."""
 KINDS = frozenset(("word", "value", "named", "function", "expression", "command"))
 
 
@@ -50,8 +53,10 @@ class InPlace(Learning):
     def _is_said(self, item: gx.Item) -> bool:
         if item.kind in ("label", "comment"):
             return True
-        inert = item.name == "G" and item.numbers[0].lstrip("0") in INERT
-        return item.kind in KINDS and item.name in WORDS and not inert
+        if item.kind == "word" and item.name == "G":
+            return (item.numbers[0].lstrip("0") or "0") in CODES
+        plain = item.kind == "word" and item.name in PLAIN
+        return plain or (item.kind in KINDS and item.name in PLACES)
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
