@@ -36,6 +36,13 @@ MUTATIONS = (
         f"{CASE}compensated-with-asides]",
     ),
     Mutation(
+        "fagor: G50 beside an arc becomes G5",
+        "plugins/gcxform_plugins/dialects/fagor/programs.py",
+        "or line in self.frozen or half:",
+        "or line in self.frozen:",
+        "tests/test_corpus.py::test_case[segment/fagor-own-arcs-blend]",
+    ),
+    Mutation(
         "fagor: corners half rounded are rounded",
         BLOCKS,
         'words.append(gx.Speller.aside("G50"))',

@@ -301,8 +301,12 @@ class Programs(Flow):
         return None if self.tied or line in self.frozen else spelled(self.lines[line], blocks)
 
     def replaced(self, line: int, said: Sequence[str]) -> str | None:
-        """Return the lines that stand for what a line became, with its head and its comment."""
-        if self.tied or line in self.frozen:
+        """Return the lines that stand for what a line became, with its head and its comment.
+
+        None for one with G50 or G61: how near to a corner is more than blocks say.
+        """
+        half = any(item.name in ("G50", "G61") for item in self.items(line))
+        if self.tied or line in self.frozen or half:
             return None
         text = self.lines[line]
         head, bare = HEAD.match(text), code(text).rstrip()
