@@ -1,6 +1,6 @@
 """Do the tests see a wrong gcxform? Each mutation is a small fault; a test must fail on it.
 
-    python tests/mutations.py [--jobs N] [--every 1] [--remember] [NAME ...]
+    python tests/mutations.py [--jobs N] [--shares 1] [--remember] [NAME ...]
 
 The packages are copied to temporary directories, as many as run at a time. A fault is written into
 a copy, and the tests of the fault run on it until one fails. A fault that no test notices survives;
@@ -12,6 +12,8 @@ named in the end.
 A fault is tried first in a copy of a process that has loaded gcxform, in which the code of a few
 functions is replaced (`swapping.py`); commands that a test starts find it in the copied packages.
 Where that cannot be done, or nothing fails, the copied packages are loaded anew.
+
+Of `--shares` each commit has the next one to run: so many commits run all faults.
 
 `--remember` writes into `tests/faults/noticed.txt` which test noticed, where that took long. Next
 time it is run first; if it passes, or is no more, all tests of the fault are run. So this file
@@ -30,6 +32,7 @@ import importlib
 import os
 import shutil
 import signal
+import subprocess
 import sys
 import tempfile
 import traceback
@@ -324,12 +327,12 @@ def main(arguments: list[str] | None = None) -> int:
     """Run all mutations, or those named; return the exit code."""
     parser = argparse.ArgumentParser(description="Do the tests see a wrong gcxform?")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--every", type=int, default=1, help="run one of so many")
+    parser.add_argument("--shares", type=int, default=1, help="run one of so many shares")
     parser.add_argument("--remember", action="store_true", help="write down what noticed")
     parser.add_argument("names", nargs="*", help="parts of names of mutations")
     asked = parser.parse_args(arguments)
     chosen = [m for m in MUTATIONS if not asked.names or any(n in m.name for n in asked.names)]
-    chosen = chosen[:: asked.every]
+    chosen = chosen[commits() % asked.shares :: asked.shares]
     if found := problems():
         print("\n".join(found))
         return 1
@@ -340,6 +343,14 @@ def main(arguments: list[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as temporary:
         folders = [copied(Path(temporary) / str(n)) for n in range(asked.jobs)]
         return judged(chosen, folders, asked.remember)
+
+
+def commits() -> int:
+    """Return how many commits there are up to this one, 0 where git does not say."""
+    count = ["git", "-C", str(ROOT), "rev-list", "--count", "HEAD"]
+    if shutil.which("git") is None:
+        return 0
+    return int(subprocess.run(count, capture_output=True, text=True).stdout or 0)
 
 
 def judged(chosen: list[Mutation], folders: list[Path], writes: bool) -> int:

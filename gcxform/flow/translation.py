@@ -25,7 +25,7 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item
-from gcxform.flow.learned import SOON, Learned
+from gcxform.flow.learned import SOON, Ahead, Learned
 from gcxform.flow.line_shapes import COMMENT, LineShapes, Shape
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
@@ -156,13 +156,17 @@ class Translator(LineShapes):
         del line
         return False
 
+    def uncommented(self, text: str) -> str:
+        """Return lines without comments, if one may stand within what is `stepped`."""
+        return text
+
     def counting_lines(self) -> frozenset[int]:
         """Return the lines, from 0, that have such words."""
         if self.stepped is None:
             return frozenset(k for k, line in enumerate(self.lines) if self.counts(line))
-        ends = [*accumulate(len(line) + 1 for line in self.lines)]
-        found = self.stepped.finditer("\n".join(self.lines))
-        lines = {bisect_left(ends, match.end()) for match in found}
+        text = self.uncommented("\n".join(self.lines))
+        ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
+        lines = {bisect_left(ends, match.end()) for match in self.stepped.finditer(text)}
         return frozenset(line for line in lines if self.counts(self.lines[line]))
 
     # --- files ---
@@ -222,7 +226,9 @@ class Translator(LineShapes):
                 raise self.refusal("GX224", message, hint=f"does it end? {how_to_raise('steps')}")
             shape, numbers = self.shape(self.line)
             if shape.template and self.plainly:
-                yield self.line, (shape.template % (*numbers,),)
+                blocks = [shape.template % (*numbers,), *self._plain_behind()]
+                left -= len(blocks) - 1
+                yield first, blocks
                 continue
             if shape.routine:
                 before = self.visit
@@ -240,33 +246,57 @@ class Translator(LineShapes):
 
     def _at_once(self) -> Iterator[tuple[int, Sequence[str]]]:
         """Yield the blocks of a run of lines, and go on to the line behind them."""
-        blocks, first = self.several(), self.line
-        if blocks and "" not in blocks:
-            self.visit += len(blocks) - 1
-            yield first, blocks
-            self.line, self.at = first + len(blocks), self.at + len(blocks)
-            self.visit += 1
-            return
-        for block in blocks:
-            if block:
-                yield self.line, (block,)
-            self.line, self.at = self.at, self.at + 1
-            self.visit += 1
+        blocks, first, visit = self.several(), self.line, self.visit
+        begin = 0
+        for end in [*(k for k, block in enumerate(blocks) if not block), len(blocks)]:
+            if begin < end:
+                self.visit = visit + end - 1
+                yield first + begin, blocks[begin:end]
+            begin = end + 1
+        self.line, self.at = first + len(blocks), self.at + len(blocks)
+        self.visit = visit + len(blocks)
 
     def _stretch(self, learned: Learned) -> list[str]:
         """Return the blocks of the lines from here on that are known, one for each; go on to them.
 
         The translator is not touched by these.
         """
+        known = learned.stretch(*self._lines_ahead(), self._shapes)
+        self._pass(len(known))
+        return known
+
+    def _plain_behind(self) -> list[str]:
+        """Return the blocks of the plain lines from here on, one for each; go on to them."""
+        if self.at >= len(self.lines) or (
+            self.annexed is not None and self.at in self.annexed.seams
+        ):
+            return []
+        ahead, lines = self._lines_ahead()
+        templates = list[str]()
+        for line in lines:
+            shape = self._shapes.get(ahead.keys[line])
+            if shape is None or not shape.template:
+                break
+            templates.append(shape.template)
+        if not templates:
+            return []
+        self._pass(len(templates))
+        begin, end = ahead.starts[lines.start], ahead.starts[lines.start + len(templates)]
+        return ("\n".join(templates) % tuple(ahead.numbers[begin:end])).split("\n")
+
+    def _lines_ahead(self) -> tuple[Ahead, range]:
+        """Return lines that were split at once, and those of them from here on, of one file."""
         ahead, k = self._split_ahead(self.at)
         stop = k + len(self.lines) - self.at
         if self.annexed is not None:
             stop = k + min(seam for seam in self.annexed.seams if seam > self.at) - self.at
-        known = learned.stretch(ahead, range(k, min(stop, len(ahead.keys))), self._shapes)
-        self.at += len(known)
-        self.visit += len(known)
+        return ahead, range(k, min(stop, len(ahead.keys)))
+
+    def _pass(self, count: int) -> None:
+        """Go on behind lines of which there are the blocks."""
+        self.at += count
+        self.visit += count
         self.line = self.at - 1
-        return known
 
     def _learnt(self, shape: Shape, numbers: Sequence[str]) -> Iterable[str]:
         """Return the blocks of a line, as they were learnt where there is something."""

@@ -11,6 +11,7 @@ from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import INCH
 from gcxform.proof.trace import Trace
 from gcxform.system.arrays import Flags, Ints
+from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Event, Kind, Toolpath
 
 LENGTHS = frozenset("XYZUVWIJKR")
@@ -56,13 +57,14 @@ def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:
 
     No code in the output says it, but the rows (n,) of the source that its rows came from.
     """
-    pairs = np.stack([path.frame, read.frame[row]])
-    pairs, which = np.unique(pairs, axis=1, return_inverse=True)
+    count = len(read.frames)
+    pair = path.frame * count + read.frame[row]
+    pairs = distinct(pair)
     frames = tuple(
         replace(path.frames[mine], following=read.frames[its].following)
-        for mine, its in pairs.T.tolist()
+        for mine, its in (divmod(each, count) for each in pairs.tolist())
     )
-    return path.replace(frames=frames, frame=which.reshape(-1))
+    return path.replace(frames=frames, frame=np.searchsorted(pairs, pair))
 
 
 def in_mm(event: Event, path: Toolpath) -> Event:

@@ -29,6 +29,27 @@ SECOND = "tests/test_fagor_reference.py"
 
 MUTATIONS = (
     Mutation(
+        "translation: a run of plain lines goes on over one that is none",
+        TRANSLATION,
+        "            if shape is None or not shape.template:\n                break",
+        "            if shape is None or not shape.template:\n                continue",
+        WALK,
+    ),
+    Mutation(
+        "translation: a run without some blocks is for the lines before",
+        TRANSLATION,
+        "            begin = end + 1",
+        "            begin = end",
+        "tests/test_klartext_runs.py",
+    ),
+    Mutation(
+        "fagor: a value in brackets does not count from where an axis stands",
+        "plugins/gcxform_plugins/dialects/fagor/spelling.py",
+        '[IiGg](?:(?<=[0-9.\\]][Ii])',
+        '[IiGg](?:(?<=[0-9.][Ii])',
+        f"{CASE}steps-in-brackets]",
+    ),
+    Mutation(
         "fagor: what says how near to a corner is left out for the same control",
         BLOCKS,
         "if head in tables.INERT and self.reading.asides:",

@@ -70,6 +70,13 @@ MUTATIONS = (
         TURNED,
     ),
     Mutation(
+        "switches: the proof takes the tips of another frame",
+        KNOWN,
+        "    pair = path.frame * count + read.frame[row]",
+        "    pair = path.frame * count + read.frame[0]",
+        TESTS,
+    ),
+    Mutation(
         "switches: the proof lets axes move of which the source knows nothing",
         KNOWN,
         "end[rests & unknown] = np.nan",

@@ -27,7 +27,9 @@ from gcxform_plugins.dialects.fagor.structure import (
 DEEPEST = 20  # calls inside of each other
 RETURNS = frozenset(("M17", "M29", "#RET"))
 CALL = re.compile(r"(LL|L|#CALL|#PCALL)[ \t]+\[?(.*?)\]?", re.IGNORECASE | re.DOTALL)
-FLOWS = re.compile(r"[ \t]*(?:[/N0-9:\[\]A-Z_ \t])*(?:\$|#P?CALL|#RET|LL?[ \t]+[^0-9 \t])", re.I)
+FLOWS = re.compile(
+    r"^[/N0-9:\[\]A-Z_ \t]*(?:\$|#P?CALL|#RET|LL?[ \t]+[^0-9 \t\n])", re.IGNORECASE | re.MULTILINE
+)
 END_OPEN = 'say for-end = "included" in [control], or for-end = "excluded" in [control]'
 
 
@@ -56,7 +58,8 @@ class Flow(Computing):
         self._structures: dict[int, Structure] = {}
         self.local, self.at, self.wrong = self._sections()
         self.begin = self.at
-        self.decides = bool(self.local) or any(FLOWS.match(code(text)) for text in self.lines)
+        self._text = code("\n".join(self.lines))
+        self.decides = bool(self.local) or FLOWS.search(self._text) is not None
         self.plainly = not self.decides
         self.does: Mapping[str, Callable[[Any], None]] = {
             "if": self._if,

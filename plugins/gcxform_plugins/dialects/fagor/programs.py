@@ -17,7 +17,7 @@ from gcxform_plugins.dialects.fagor import tables
 from gcxform_plugins.dialects.fagor.flow import Flow
 from gcxform_plugins.dialects.fagor.lines import Lines
 from gcxform_plugins.dialects.fagor.places import code_of
-from gcxform_plugins.dialects.fagor.spelling import HEAD, counts, spelled
+from gcxform_plugins.dialects.fagor.spelling import COUNTS, HEAD, STEPPED, spelled
 from gcxform_plugins.dialects.fagor.structure import StructureError, code
 from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
@@ -86,6 +86,7 @@ class Programs(Flow):
     speller = Lines
     kept = KEPT
     against = AGAINST
+    stepped = STEPPED
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)
@@ -97,8 +98,8 @@ class Programs(Flow):
         self.ran: set[int] = set()
         self.frozen: set[int] = set()
         self.gone: set[str] = set()
-        self.named = tables.AXES & set("".join(map(code, self.lines)).upper())
-        self.hangs = any(HANGS.search(code(text)) for text in self.lines)
+        self.named = tables.AXES & set(self._text.upper())
+        self.hangs = HANGS.search(self._text) is not None
         self.plainly = self.plainly and not (self.reading.stays and self.hangs)
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
@@ -315,9 +316,13 @@ class Programs(Flow):
         blank = " " if head and head[0].strip() else ""
         return "\n".join([f"{head[0].rstrip() if head else ''}{blank}{first}{behind}", *more])
 
+    def uncommented(self, text: str) -> str:
+        """Return lines without comments: one may stand between the parts of a word."""
+        return code(text)
+
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
-        return counts(line)
+        return COUNTS.search(code(line)) is not None
 
     def closing(self) -> Iterator[str]:
         """Say which lines are kept."""

@@ -15,7 +15,7 @@ from gcxform_plugins.dialects.shared.words import COMMENT, WORD, number
 
 AXES = "XYZABCUVW"
 NUMBER = r"[-+]?[ \t]*(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
-VALUE = rf"(?:{NUMBER}|[-+]?[ \t]*(?:P[0-9]+|\[(?:[^\[\]]|\[[^\[\]]*\])*\]))"
+VALUE = rf"(?:{NUMBER}|[-+]?[ \t]*(?:P[0-9]+|\[(?:[^\[\]\n]|\[[^\[\]\n]*\])*\]))"
 STEP = r"I(?![ \t]*[-+.0-9=\[P])"
 AXIS = re.compile(
     rf"(?<![A-Z0-9_.])(?P<axis>[{AXES}])(?P<blank>[ \t]*=?[ \t]*)(?P<value>{VALUE})"
@@ -26,13 +26,12 @@ STEPS = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
 ABSOLUTE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
 RADIUS = re.compile(rf"(?<![A-Z0-9_])R[ \t]*=?[ \t]*{NUMBER}", re.IGNORECASE)
 HEAD = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*:?)?(?:[ \t]*\[[A-Z0-9_ ]*\])*", re.I)
-STEPPED = re.compile(rf"(?<![A-Z0-9_.])[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}", re.IGNORECASE)
-
-
-def counts(line: str) -> bool:
-    """Whether a line has a word that counts from where its axis stands, or says G91."""
-    text = code(line)
-    return STEPPED.search(text) is not None or STEPS.search(text) is not None
+COUNTS = re.compile(
+    rf"(?<![A-Z0-9_.])[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}|{STEPS.pattern}", re.IGNORECASE
+)
+"""Words that count from where their axis stands, or G91."""
+STEPPED = re.compile(r"[IiGg](?:(?<=[0-9.\]][Ii])|(?<=[Gg])[ \t]*0*91)")
+"""What each of them has: letters that may be looked for one by one."""
 
 
 def spelled(line: str, blocks: Sequence[str]) -> str | None:

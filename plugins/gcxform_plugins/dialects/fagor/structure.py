@@ -14,7 +14,7 @@ HEAD = re.compile(
 LABEL = re.compile(r"\[[ \t]*([A-Z_][A-Z0-9_]*)[ \t]*\]", re.IGNORECASE)
 HEADER = re.compile(r"[ \t]*%(?P<rest>[^;(]*)")
 LOCAL = re.compile(r"[ \t]*L(?:[ \t]+(?P<name>[^ \t]+)|(?P<number>[0-9]+))[ \t]*", re.IGNORECASE)
-COMMENT = re.compile(r"\([^)]*\)?|;.*")
+COMMENT = re.compile(r"\([^)\n]*\)?|;.*")
 ENDS = {
     "ENDIF": "IF",
     "ENDFOR": "FOR",
@@ -36,7 +36,7 @@ class StructureError(Exception):
 
 
 def code(text: str) -> str:
-    """Return a line without its comments."""
+    """Return lines without their comments."""
     return COMMENT.sub("", text)
 
 

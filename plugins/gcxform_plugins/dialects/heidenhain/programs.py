@@ -15,7 +15,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.runs import Runs
-from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, code, spelled
+from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, STEPPED_AT, code, spelled
 from gcxform_plugins.dialects.heidenhain.words import goes_on
 from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
@@ -68,7 +68,7 @@ class Programs(Runs):
     speller = Lines
     kept = KEPT
     against = AGAINST
-    stepped = STEPPED
+    stepped = STEPPED_AT
 
     def __init__(self, *program: object) -> None:
         super().__init__(*program)
