@@ -190,6 +190,15 @@ CODES: dict[str, tuple[str, str]] = {
         "a lathe X is a diameter, and G90, G92 and G94 may be cycles, so that all the rest would "
         "be misread too. Programs for lathes of this kind are not read.",
     ),
+    "GX235": (
+        "In which unit the program begins is not known",
+        "On this control a setting says whether programs begin in millimetres or in inches, and "
+        "this one has lengths before G20 or G21. Where its words stay as they are, that is all "
+        "the same. Here they become others: positions that an error is taken off, pieces of a "
+        "length, words for another control; a guess would be wrong by a factor of 25.4. Say "
+        '`units = "mm"` or `units = "in"` in [input], as the setting stands on the machine that '
+        "the program is for, or write G21 or G20 at its beginning.",
+    ),
     "GX240": (
         "A program that has been turned into commands already",
         "A comment in the program says that a run has turned its positions into others: into "

@@ -8,7 +8,9 @@ executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Collection, Iterator
+from itertools import accumulate
 
 import numpy as np
 
@@ -28,6 +30,17 @@ WHY = {
     "NO_CUTTER_COMP": "cutter compensation begins in it",
 }
 """What is wrong with a line that has what is against a fact."""
+
+
+def counting_lines(translator: Translator) -> frozenset[int]:
+    """Return the lines, from 0, with words that count from where an axis stands."""
+    lines = translator.lines
+    if translator.stepped is None:
+        return frozenset(k for k, line in enumerate(lines) if translator.counts(line))
+    text = translator.uncommented("\n".join(lines))
+    ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
+    found = {bisect_left(ends, match.end()) for match in translator.stepped.finditer(text)}
+    return frozenset(line for line in found if translator.counts(lines[line]))
 
 
 def respelled(

@@ -55,11 +55,6 @@ def spelled_out(
 
 def inch_first(blocks: Sequence[bytes], inch: bool) -> bool:
     """Whether blocks begin in inches; `inch`: it is so where none says it."""
-    first = unit_said(blocks)
-    return inch if first is None else INCHES.search(first) is not None
-
-
-def unit_said(blocks: Sequence[bytes]) -> bytes | None:
-    """Return the first block that says a unit; None if none does."""
     units = (block for block in blocks if INCHES.search(block) or MILLIMETRES.search(block))
-    return next(units, None)
+    first = next(units, None)
+    return inch if first is None else INCHES.search(first) is not None

@@ -32,15 +32,14 @@ class Speller(ABC):
 
     `comment` begins a line that says nothing to the control, wherever one may stand behind the end
     of a program; nothing where none may. `inert` are M codes that leave the axes where they stand.
-    `says_unit`: programs begin with the unit of their lengths. `asides`: what goes along as it was
-    programmed stands in comments, which nobody else than a translator can have written.
+    `asides`: what goes along as it was programmed stands in comments, which nobody else than a
+    translator can have written.
     """
 
     inert: frozenset[str] = frozenset()
     asides: bool = False
 
     comment: ClassVar[str] = ""
-    says_unit: ClassVar[bool] = False
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name

@@ -16,9 +16,7 @@ from __future__ import annotations
 
 import re
 from abc import abstractmethod
-from bisect import bisect_left
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
-from itertools import accumulate
 from typing import Any, ClassVar, NoReturn
 
 from gcxform.diagnostics import InputError
@@ -106,8 +104,7 @@ class Translator(LineShapes):
         """Return a line that `computes` in plain words, and what does all else that it does.
 
         It is asked where lines are learnt, and may not hang on more than variables, nor change more
-        of the translator, and nothing before what it returned is called. None for lines that have
-        to be translated.
+        of the translator, and nothing before what it returned is called. None for others.
         """
         del text
         return None
@@ -115,9 +112,7 @@ class Translator(LineShapes):
     def several(self) -> list[str]:
         """Return the blocks of a run of lines from `line` on, one for each; nothing without one.
 
-        A line without a block has an empty one.
-
-        They have to be what `blocks` returns for each of them by itself.
+        A line without a block has an empty one. They are what `blocks` returns for each by itself.
         """
         return []
 
@@ -126,19 +121,17 @@ class Translator(LineShapes):
         return ()
 
     def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
-        """Return a line that stands for new blocks, in the manner of the one that is there.
+        """Return a line that stands for new blocks, in the manner of `line`, which counts from 0.
 
-        `line` counts from 0; None where no such line is known.
-
-        What is returned is read again, and has to stand for those blocks.
+        None where no such line is known. What is returned is read again, and has to stand for them.
         """
         del line, blocks
         return None
 
     def replaced(self, line: int, said: Sequence[str]) -> str | None:
-        """Return lines for what a line became, joined by line feeds; None where there are none.
+        """Return lines for what a line became, as the speller has `said` it; None without any.
 
-        `said` are those of the speller, where nothing like the line can say it.
+        They are joined by line feeds. Nothing like the line can say it.
         """
         del line, said
         return None
@@ -159,15 +152,6 @@ class Translator(LineShapes):
     def uncommented(self, text: str) -> str:
         """Return lines without comments, if one may stand within what is `stepped`."""
         return text
-
-    def counting_lines(self) -> frozenset[int]:
-        """Return the lines, from 0, that have such words."""
-        if self.stepped is None:
-            return frozenset(k for k, line in enumerate(self.lines) if self.counts(line))
-        text = self.uncommented("\n".join(self.lines))
-        ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
-        lines = {bisect_left(ends, match.end()) for match in self.stepped.finditer(text)}
-        return frozenset(line for line in lines if self.counts(self.lines[line]))
 
     # --- files ---
 

@@ -255,7 +255,9 @@ class Plan:
         curves = not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)
         own = self.source.translator is self.target.translator and not (same or stays)
         reading = replace(reading, curves=curves, stays=stays, asides=own)
-        return replace(reading, crosses=not same, modes_count=counts)
+        cuts = any(not step.demands.keeps_rows for step in self.path_passes)  # by lengths in mm
+        open_ = self.source.program_rule.unit_is_set and not reading.units and (counts or cuts)
+        return replace(reading, crosses=not same, modes_count=counts, unit_open=open_)
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

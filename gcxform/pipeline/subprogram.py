@@ -198,7 +198,9 @@ def at_entry(plan: Plan) -> Plan:
 def _begun(dialect: type[Dialect], modes: tuple[str, ...]) -> type[Dialect]:
     """Return a dialect whose programs begin in modes, and otherwise in its own."""
     groups = {dialect.codes[code].group: code for code in modes}
-    return type(dialect.__name__, (dialect,), {"initial": {**dialect.initial, **groups}})
+    rule = replace(dialect.program_rule, unit_is_set=False)  # its caller sets it
+    begun = {"initial": {**dialect.initial, **groups}, "program_rule": rule}
+    return type(dialect.__name__, (dialect,), begun)
 
 
 def _done(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
-from gcxform.diagnostics import InputError, Location
 from gcxform.emit.emitter import Emitted
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
@@ -21,8 +20,6 @@ if TYPE_CHECKING:
     from gcxform.emit.folding import Folded
     from gcxform.flow.speller import Speller
     from gcxform.flow.translated import Translated
-
-UNIT = 'units = "mm" in [input], or units = "in" in [input] where the setting says inches'
 
 
 @dataclass
@@ -54,14 +51,14 @@ class WrittenBack:
     def fold(self) -> Folded:
         """Return the program. Raises InputError where a line cannot be spelled."""
         from gcxform.emit.folding import Folded
-        from gcxform.emit.respelling import refuse_kept, respelled
+        from gcxform.emit.respelling import counting_lines, refuse_kept, respelled
         from gcxform.proof.respelled import check_kept
 
         given, facts = b"".join(self.given.windows()), facts_after(self.plan.path_passes)
         refuse_kept(self.source, facts)
         counting, text = frozenset[int](), given
         if ABSOLUTE in facts:
-            counting = self.source.translator.counting_lines()
+            counting = counting_lines(self.source.translator)
         if counting or not self._stays:
             blocks: list[list[bytes]] = [[] for _ in self.source.origin]
             for part in self.parts:
@@ -127,7 +124,6 @@ class SpelledOut:
 
         blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
-        self._refuse_open_unit(blocks)
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
             blocks,
@@ -141,17 +137,6 @@ class SpelledOut:
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
-
-    def _refuse_open_unit(self, blocks: list[bytes]) -> None:
-        """Refuse to say a unit which a setting of the control decides that the program is for."""
-        from gcxform.emit.spelled_out import unit_said
-
-        source, target = self.plan.source, self.plan.target
-        is_open = source.program_rule.unit_is_set and not self.plan.reading.units
-        if is_open and self.kind.says_unit and unit_said(blocks) is None:
-            message = f"{target.name} says the unit, and this program does not: a setting decides"
-            where = Location(self.given.name, 1)
-            raise InputError.one("GX501", f"{message} it", where, UNIT)
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program is the one that has been proved. Raises VerificationError."""

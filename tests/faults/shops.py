@@ -42,9 +42,9 @@ FAULTS = (
     ),
     (
         "the unit that a setting decides is said",
-        "gcxform/pipeline/written_back.py",
-        "if is_open and self.kind.says_unit and",
-        "if False and",
+        "gcxform/pipeline/plan.py",
+        "and not reading.units and (counts or cuts)",
+        "and not reading.units and (False or cuts)",
         f"{CASE}[dialects/across/unit-of-a-setting]",
     ),
     (
