@@ -65,6 +65,27 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/message-beside-a-value]",
     ),
     Mutation(
+        "siemens: a slash before a call is taken for the call",
+        "grammars/gcxform_grammars/siemens_computed.lark",
+        "_head: _SLASH | sequence | label\n",
+        "_head: slash | sequence | label\nslash: _SLASH\n",
+        f"{CASES}[dialects/siemens/slash-computed]",
+    ),
+    Mutation(
+        "siemens: a slash stays before what is computed",
+        "plugins/gcxform_plugins/dialects/siemens/computing.py",
+        'return SLASH.sub("", text)',
+        "return text",
+        f"{CASES}[dialects/siemens/slash-computed]",
+    ),
+    Mutation(
+        "siemens: half a structure is skipped",
+        DECIDING,
+        "if skipped and any(",
+        "if not skipped and any(",
+        f"{CASES}[dialects/siemens/slash-of-a-structure]",
+    ),
+    Mutation(
         "siemens: CT behind a hole goes on as before it",
         BLOCKS,
         "hole.own_feed\n        self.along = None",

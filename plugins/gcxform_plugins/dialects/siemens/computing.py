@@ -22,6 +22,7 @@ from gcxform_plugins.dialects.siemens.variables import AXES
 
 COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
+SLASH = re.compile(r"\A[ \t]*/[0-9]?")
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
 BRACKETS = str.maketrans("()\x01", "[] ")
 UNTOLD = "messages of which only the control knows the text are left out"
@@ -159,7 +160,7 @@ class Computing(Deciding):
         text = text.partition(";")[0] if '"' not in text else code(text, True)
         for start, end, new in sorted(edits, reverse=True):
             text = text[:start] + new + text[end:]
-        return text
+        return SLASH.sub("", text)
 
 
 def _whole(item: gx.Item) -> int:

@@ -85,6 +85,13 @@ class Deciding(Variables):
             self.line = why.line
             raise self.refusal("GX223", why.message) from None
 
+    def _skips(self, items: Any) -> bool:
+        """Whether the line is skipped. Raises InputError for half a structure that is."""
+        skipped = super()._skips(items)
+        if skipped and any(i.kind == "flow" for i in items) and self.part_here() is not None:
+            self.refuse("what of a structure is executed of which this line is skipped", items[0])
+        return skipped
+
     def _check(self, part: Part) -> None:
         """Take a line that only begins or ends a structure."""
 
