@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import Mutation
+from faults.mutation import CORPUS, Mutation
 
 LANGUAGES = "plugins/gcxform_plugins/languages"
 CYCLES = "plugins/gcxform_plugins/dialects/heidenhain/cycles.py"
@@ -57,6 +57,13 @@ MUTATIONS = (
         '    "LINEAR_ONLY": ARCS,\n',
         "",
         "tests/test_corpus.py::test_case[dialects/heidenhain-segment-of-a-kept-arc]",
+    ),
+    Mutation(
+        "heidenhain: a line goes on behind a comment that ends in a tilde",
+        LINES,
+        "text.rstrip(GOES_ON) if text",
+        "text if text",
+        f"{CORPUS}[dialects/across/comment-that-goes-on]",
     ),
     Mutation(
         "heidenhain: a tool is fetched and changed at once",

@@ -18,6 +18,8 @@ from gcxform_plugins.dialects.heidenhain.words import exact
 COMMENT = re.compile(r"\(([^()]*)\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 BLANKS = str.maketrans("", "", " \t")
+GOES_ON = "~ "
+"""What ends a line that the next one goes on with, behind a comment too; and blanks."""
 AXES = "XYZABCUVW"
 LINEAR = "XYZ"
 MODES = frozenset(("G80", "G90.1", "G91.1", "G94", "G97", "G54", "G98", "G99"))
@@ -80,16 +82,17 @@ class Lines(gx.Speller):
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
-        comments = [each.strip() for each in COMMENT.findall(block)]
+        text = " ".join([each.strip() for each in COMMENT.findall(block)])
+        comment = text.rstrip(GOES_ON) if text else None
         bare = COMMENT.sub("", block).partition(";")[0]
         words = WORD.findall(bare.translate(BLANKS).upper())
         codes = [_code(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*self._said(codes, values)] if codes or values else []
-        if comments and found:
-            found[0] += " ; " + " ".join(comments)
-        elif comments:
-            found = [f"; {' '.join(comments)}"]
+        if comment is not None and found:
+            found[0] += f" ; {comment}"
+        elif comment is not None:
+            found = [f"; {comment}"]
         return found
 
     def _said(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
