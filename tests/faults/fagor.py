@@ -57,6 +57,20 @@ MUTATIONS = (
         f"{CASE}compensated-with-asides]",
     ),
     Mutation(
+        "fagor: a slash stands for what computes",
+        "grammars/gcxform_grammars/fagor_computed.lark",
+        "_head: _SLASH | sequence | label\n",
+        "_head: slash | sequence | label\nslash: _SLASH\n",
+        f"{CASE}slash-computed]",
+    ),
+    Mutation(
+        "fagor: half a structure is skipped",
+        FLOW,
+        ".upper() in HALVES:",
+        ".upper() in ():",
+        f"{CASE}slash-of-a-structure]",
+    ),
+    Mutation(
         "fagor: G50 beside an arc becomes G5",
         "plugins/gcxform_plugins/dialects/fagor/programs.py",
         "or line in self.frozen or half:",

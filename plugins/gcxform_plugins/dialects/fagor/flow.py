@@ -16,7 +16,11 @@ from gcxform_plugins.dialects.fagor.arithmetic import NEAR
 from gcxform_plugins.dialects.fagor.computing import LOCALS, Computing
 from gcxform_plugins.dialects.fagor.places import code_of
 from gcxform_plugins.dialects.fagor.structure import (
+    ENDS,
+    HEAD,
+    INNER,
     LOOPS,
+    OPENS,
     Part,
     Structure,
     StructureError,
@@ -24,6 +28,7 @@ from gcxform_plugins.dialects.fagor.structure import (
     sections,
 )
 
+HALVES = frozenset((*OPENS, *INNER, *ENDS))
 DEEPEST = 20  # calls inside of each other
 RETURNS = frozenset(("M17", "M29", "#RET"))
 CALL = re.compile(r"(LL|L|#CALL|#PCALL)[ \t]+\[?(.*?)\]?", re.IGNORECASE | re.DOTALL)
@@ -134,6 +139,14 @@ class Flow(Computing):
 
     def _part(self) -> Part:
         return self.structure.at[self.line]
+
+    def _skips(self, items: Any) -> bool:
+        """Whether the line is skipped. Raises InputError for half a structure that is."""
+        skipped = super()._skips(items)
+        found = HEAD.match(code(self.lines[self.line])) if skipped else None
+        if found is not None and (found["word"] or "").upper() in HALVES:
+            self.refuse("what of a structure is executed of which this line is skipped", items[0])
+        return skipped
 
     def _go(self, line: int) -> None:
         self.at = line
