@@ -79,6 +79,13 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/slash-computed]",
     ),
     Mutation(
+        "siemens: G9 stops at the end of the first of the lines of an arc",
+        "plugins/gcxform_plugins/dialects/siemens/dialect.py",
+        '"G9": v.at_end("non-modal"),',
+        '"G9": v.inert("non-modal"),',
+        f"{CASES}[segment/siemens-own-arcs-exact-stop]",
+    ),
+    Mutation(
         "siemens: half a structure is skipped",
         DECIDING,
         "if skipped and any(",

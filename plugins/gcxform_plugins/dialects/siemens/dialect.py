@@ -161,7 +161,7 @@ class Siemens(gx.Dialect):
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
-        "G9": v.inert("path"),
+        "G9": v.at_end("non-modal"),
         "G60": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),
     }
