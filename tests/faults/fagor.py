@@ -57,6 +57,34 @@ MUTATIONS = (
         f"{CASE}compensated-with-asides]",
     ),
     Mutation(
+        "fagor: a parameter that is set beside an arc is gone with it",
+        PROGRAMS,
+        "all(map(_is_said, items)) and not any(sets)",
+        "all(map(_is_said, items))",
+        "tests/test_corpus.py::test_case[segment/fagor-own-arcs-parameter]",
+    ),
+    Mutation(
+        "fagor: the number of an arc is said twice",
+        PROGRAMS,
+        'NUMBER.sub("", each.partition(";")[0].rstrip())',
+        'each.partition(";")[0].rstrip()',
+        "tests/test_corpus.py::test_case[segment/fagor-own-arcs-numbered]",
+    ),
+    Mutation(
+        "fagor: lines stand for an arc where coordinates are scaled",
+        PROGRAMS,
+        "self.scaled |= SCALES.search(text) is not None",
+        "pass",
+        "tests/test_corpus.py::test_case[segment/fagor-own-arcs-scaled]",
+    ),
+    Mutation(
+        "fagor: a plain arc is not looked at where coordinates are scaled",
+        PROGRAMS,
+        "or self.gone or self.scaled)",
+        "or self.gone)",
+        "tests/test_corpus.py::test_case[segment/fagor-own-arcs-scaled]",
+    ),
+    Mutation(
         "fagor: a slash stands for what computes",
         "grammars/gcxform_grammars/fagor_computed.lark",
         "_head: _SLASH | sequence | label\n",
@@ -73,8 +101,8 @@ MUTATIONS = (
     Mutation(
         "fagor: G50 beside an arc becomes G5",
         "plugins/gcxform_plugins/dialects/fagor/programs.py",
-        "or line in self.frozen or half:",
-        "or line in self.frozen:",
+        'and code_of(item) not in ("G50", "G61")',
+        "",
         "tests/test_corpus.py::test_case[segment/fagor-own-arcs-blend]",
     ),
     Mutation(

@@ -59,6 +59,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain-segment-of-a-kept-arc]",
     ),
     Mutation(
+        "heidenhain: M90 beside an arc is gone with it",
+        BACK,
+        "not in SILENT | SHORTEST",
+        "not in SHORTEST",
+        f"{CORPUS}[segment/klartext-own-arcs-corners]",
+    ),
+    Mutation(
         "heidenhain: a line goes on behind a comment that ends in a tilde",
         LINES,
         "text.rstrip(GOES_ON) if text",

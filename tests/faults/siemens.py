@@ -79,6 +79,13 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/slash-computed]",
     ),
     Mutation(
+        "siemens: lines stand for an arc where a frame scales",
+        PROGRAMS,
+        "if self.reading.stays and self._scales():",
+        "if False:",
+        f"{CASES}[segment/siemens-own-arcs-scaled]",
+    ),
+    Mutation(
         "siemens: G9 stops at the end of the first of the lines of an arc",
         "plugins/gcxform_plugins/dialects/siemens/dialect.py",
         '"G9": v.at_end("non-modal"),',

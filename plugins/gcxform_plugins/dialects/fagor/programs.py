@@ -14,6 +14,7 @@ from copy import copy
 
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables
+from gcxform_plugins.dialects.fagor.computing import rule_of
 from gcxform_plugins.dialects.fagor.flow import Flow
 from gcxform_plugins.dialects.fagor.lines import Lines
 from gcxform_plugins.dialects.fagor.places import code_of
@@ -41,6 +42,8 @@ POLES = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:30|17|18|19|5[3-9]|92|15[89])(?!
 CALLS = re.compile(
     r"(?<![A-Z0-9_#$.])(?:LL?(?![A-Z])|#P?CALL|#MCALL|#MDOFF|#EXEC|#EXBLK)", re.IGNORECASE
 )
+SCALES = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*72(?![0-9.])|#SCALE", re.IGNORECASE)
+"""What makes a contour larger than its words: how near lines are to an arc does not say there."""
 LEAVES = re.compile(r"\$(?:GOTO|BREAK|CONTINUE)|#RET|(?<![A-Z0-9])M0*(?:2|17|29|30)(?![0-9])", re.I)
 ZEROS = tables.WORK | {"G159"}
 STATED = frozenset(("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G94", "G95"))
@@ -62,6 +65,8 @@ STATE = (
     ),
     *("gone", "pole", "polar", "plane", "turned", "untold"),
 )
+SAID = frozenset(("label", "colon", "comment", "code", "word", "incremental", "expression"))
+NUMBER = re.compile(r"^N[0-9]+[ \t]+")
 CODE = r"(?i)^(?:[^;(]|\([^)]*\))*?(?<![A-Z0-9_.])"
 ARCS = re.compile(rf"{CODE}(?:G[ \t]*0*(?:[2389]|3[678])(?![0-9.])|(?<=#)(?:SPLINE|AKIMA|POLY))")
 AGAINST = {
@@ -79,7 +84,7 @@ class Programs(Flow):
     maybe   lines of a structure that is kept: they may be executed
     ran     lines that were executed, and not kept;  named: axes of the program
     frozen  lines of subroutines that what is kept may call
-    gone    those that may stand anywhere
+    gone    those that may stand anywhere;  scaled: contours may be larger than their words
     """
 
     writes = True
@@ -94,7 +99,7 @@ class Programs(Flow):
         self.maybe = range(0)
         self.why = self.tied = self.modal = ""
         self.unsaid: set[str] = set()
-        self.beside = False
+        self.beside = self.scaled = False
         self.ran: set[int] = set()
         self.frozen: set[int] = set()
         self.gone: set[str] = set()
@@ -114,7 +119,7 @@ class Programs(Flow):
             self._check_beside(items)
             made = [*super().blocks(items)]
             self.ran.add(self.line)
-            free = not (self.hangs or self.unsaid or self.modal or self.gone)
+            free = not (self.hangs or self.unsaid or self.modal or self.gone or self.scaled)
             self.plainly = self.plainly and free
             return made
         except gx.InputError as error:
@@ -141,6 +146,8 @@ class Programs(Flow):
             self.refuse(f"moves behind {self.modal} are others than they say")
         if self.unsaid:
             self.refuse("whether G90 and which motion is in force is not known here")
+        if self.scaled and any(item.name.lstrip()[:1] in {*"IJKRQ"} for item in items):
+            self.refuse("an arc where coordinates may be scaled")
         if beside or (self.hangs and self._next_hangs()):
             self.refuse("the lines beside it hang on the direction of this move")
 
@@ -237,6 +244,7 @@ class Programs(Flow):
         if codes & {"G80", "G40"} and not modal:
             self.modal = ""
         self.beside = BEHIND.search(text) is not None
+        self.scaled |= SCALES.search(text) is not None
         if opaque or any(item.name in ("T", "D") for item in items) or "M6" in codes:
             self.tool = self.edge = self.in_spindle = ""
 
@@ -304,21 +312,28 @@ class Programs(Flow):
     def replaced(self, line: int, said: Sequence[str]) -> str | None:
         """Return the lines that stand for what a line became, with its head and its comment.
 
-        None for one with G50 or G61: how near to a corner is more than blocks say.
+        None for one that has more than blocks say: how near to a corner, a parameter that is set.
         """
-        half = any(item.name in ("G50", "G61") for item in self.items(line))
-        if self.tied or line in self.frozen or half:
+        if self.tied or line in self.frozen or not self._says_all(line):
             return None
         text = self.lines[line]
         head, bare = HEAD.match(text), code(text).rstrip()
         behind = text[len(bare) :] if text.startswith(bare) else ""
-        first, *more = [each.partition(";")[0].rstrip() for each in said]
+        first, *more = [NUMBER.sub("", each.partition(";")[0].rstrip()) for each in said]
         blank = " " if head and head[0].strip() else ""
         return "\n".join([f"{head[0].rstrip() if head else ''}{blank}{first}{behind}", *more])
 
     def uncommented(self, text: str) -> str:
         """Return lines without comments: one may stand between the parts of a word."""
         return code(text)
+
+    def _says_all(self, line: int) -> bool:
+        """Whether blocks say all that a line does."""
+        items = self.items(line)
+        if not any(item.kind == "expression" for item in items):
+            return all(map(_is_said, items))
+        sets = [rule_of(node) == "assignment" for node in self.tree_of(self.lines[line]).children]
+        return all(map(_is_said, items)) and not any(sets)
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
@@ -337,3 +352,8 @@ class Programs(Flow):
     def _named(self, line: int) -> str:
         file, number = self.place_of(line)
         return str(number) if line < self.own else f"{number} of {file}"
+
+
+def _is_said(item: gx.Item) -> bool:
+    """Whether blocks say what an item does, or it stands at the head or behind the line."""
+    return item.kind in SAID and code_of(item) not in ("G50", "G61")

@@ -16,6 +16,7 @@ CALLS = 99
 LONGEST_M = 4  # digits
 MACHINE = 91
 NEVER_BESIDE = (6, 91, 128, 129)
+SHORTEST = frozenset({126, 127})
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
 """Rounding of corners, messages, and M functions that cancel what is refused here."""
 MOVES_ZERO = frozenset({115, 145})
@@ -147,7 +148,7 @@ class Saying(Words):
             said.after += AT_END[code]
             said.leaves |= code == 129
             said.changes |= code == 6
-        elif code in (126, 127):
+        elif code in SHORTEST:
             self.shortest = code == 126
         elif code in SILENT:
             if code in MOVES_ZERO:

@@ -14,6 +14,7 @@ from operator import attrgetter
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_of
+from gcxform_plugins.dialects.heidenhain.positioning import SHORTEST, SILENT
 from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, STEPPED_AT, code, spelled
 from gcxform_plugins.dialects.heidenhain.words import goes_on
@@ -204,8 +205,11 @@ class Programs(Runs):
         return None if self.tied else spelled(self.lines[line], blocks, self.polar_at.get(line))
 
     def replaced(self, line: int, said: Sequence[str]) -> str | None:
-        """Return the lines that stand for what a line became, with its head and its comment."""
-        if self.tied:
+        """Return the lines that stand for what a line became, with its head and its comment.
+
+        None for one with an M function that no block says: it would be gone.
+        """
+        if self.tied or not all(map(_is_said, self.items(line))):
             return None
         text = self.lines[line]
         head = HEAD.match(text)
@@ -255,3 +259,9 @@ class Programs(Runs):
 
 def _is_off(item: gx.Item) -> bool:
     return item.kind == "radius" and bool(item.numbers) and not float(item.numbers[0])
+
+
+def _is_said(item: gx.Item) -> bool:
+    """Whether blocks say what an item does: not where M functions are passed over."""
+    number = item.numbers[0] if item.kind == "m" else ""
+    return not number.isdigit() or int(number) not in SILENT | SHORTEST
