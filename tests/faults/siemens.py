@@ -93,6 +93,13 @@ MUTATIONS = (
         f"{CASES}[segment/siemens-own-arcs-exact-stop]",
     ),
     Mutation(
+        "siemens: CYCLE832 is left out for the same control",
+        READING,
+        'if name == "CYCLE832":',
+        "if False:",
+        f"{CASES}[dialects/siemens/compensated-with-cycle832]",
+    ),
+    Mutation(
         "siemens: half a structure is skipped",
         DECIDING,
         "if skipped and any(",
@@ -1036,8 +1043,8 @@ MUTATIONS = (
     Mutation(
         "siemens: a tolerance in inches goes along with moves in millimetres",
         READING,
-        'in ("G20", "in"):',
-        'in ("in",):',
+        'in ("G20", "in")\n',
+        'in ("in",)\n',
         f"{CASES}[dialects/siemens/compensated-with-a-tolerance-in-inches]",
     ),
     Mutation(

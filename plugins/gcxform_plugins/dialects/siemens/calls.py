@@ -17,10 +17,13 @@ from lark.exceptions import UnexpectedInput
 
 import gcxform as gx
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.asides import QUIET
 from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value, converted, initial
 from gcxform_plugins.dialects.siemens.computing import Computing
 from gcxform_plugins.dialects.siemens.expressions import PARAMETER
+from gcxform_plugins.dialects.siemens.line import FRAMES
 from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, type_of
+from gcxform_plugins.dialects.siemens.reading import ORIENTATION, WHY
 from gcxform_plugins.dialects.siemens.structure import code
 from gcxform_plugins.dialects.siemens.variables import WORDS, Call
 
@@ -90,6 +93,11 @@ class Calls(Computing):
     def finds_programs(self) -> bool:
         """Whether there is a place where subprograms may be."""
         return bool(self.reading.subprograms)
+
+    def knows(self, name: str) -> bool:
+        """Whether a name is one of the language, or of a cycle of Siemens, and no subprogram's."""
+        said = {*QUIET, *ORIENTATION, *FRAMES, *WHY, "SUPA", "CIP", "TRAFOOF", "MCALL", "WORKPIECE"}
+        return name.upper() in said or re.fullmatch(r"CYCLE[0-9]+", name.upper()) is not None
 
     # --- in and out ---
 

@@ -68,8 +68,8 @@ kept as it stands, with all that is lost behind it.
 | G64, G641 to G645 | corners are rounded: G64, however far | [K] |
 | G601 to G603, ADIS | how far: left out | [K] |
 | SOFT, BRISK, FFWON, COMPCAD ... | how fast, and how smooth: left out | [K] |
-| all three, where moves are written anew for the same control | they go along | |
 | CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
+| all four, where moves are written anew for the same control | they go along | |
 | CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
 | CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
@@ -306,9 +305,14 @@ class Statements(gx.Translator):
         elif name not in TOLERANCES:
             self.refuse(f"{name}= is not read", item)
         else:
-            if self.reading.asides and (self.unit or self.reading.units) in ("G20", "in"):
-                self.refuse(f"{name}= in inches, beside moves that are written anew", item)
-            line.asides.append(f"{name}={item.numbers[0]}")
+            self._goes_along(line, item, f"{name}=", item.numbers[0])
+
+    def _goes_along(self, line: Line, item: gx.Item, what: str, value: str) -> None:
+        """Let what has a tolerance go along. Raises InputError for one in inches."""
+        inches = (self.unit or self.reading.units) in ("G20", "in")
+        if value != "()" and self.reading.asides and inches:
+            self.refuse(f"{what} in inches, beside moves that are written anew", item)
+        line.asides.append(f"{what}{value}")
 
     # --- commands ---
 
@@ -336,11 +340,6 @@ class Statements(gx.Translator):
         else:
             self.refuse(WHY.get(name, f"{name} is not read"), item)
 
-    def knows(self, name: str) -> bool:
-        """Whether a name is one of the language, or of a cycle of Siemens, and no subprogram's."""
-        said = {*QUIET, *ORIENTATION, *FRAMES, *WHY, "SUPA", "CIP", "TRAFOOF", "MCALL", "WORKPIECE"}
-        return name.upper() in said or re.fullmatch(r"CYCLE[0-9]+", name.upper()) is not None
-
     def _switched(self, line: Line, item: gx.Item, name: str) -> None:
         self._one(line, "act", item, ("M128" if name == "TRAORI" else "M129", item))
 
@@ -361,6 +360,8 @@ class Statements(gx.Translator):
                 self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
             self._one(line, "alone", item)
+            if name == "CYCLE832":
+                self._goes_along(line, item, name, f"({','.join(given)})")
         else:
             why = WHY.get(name, f"{name}(...) is not read")
             self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
