@@ -92,6 +92,20 @@ MUTATIONS = (
         f"{CASE}slash-computed]",
     ),
     Mutation(
+        "fagor: G61 is in force until another one is",
+        BLOCKS,
+        'if self.corners != "G64" or self.reading.asides:',
+        "if self.reading.asides:",
+        f"{CASE}corner-rounded-once]",
+    ),
+    Mutation(
+        "fagor: G61 becomes G5 for the same control",
+        BLOCKS,
+        'if self.corners != "G64" or self.reading.asides:',
+        'if self.corners != "G64":',
+        f"{CASE}compensated-rounded-once]",
+    ),
+    Mutation(
         "fagor: half a structure is skipped",
         FLOW,
         ".upper() in HALVES:",

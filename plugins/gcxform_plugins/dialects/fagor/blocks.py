@@ -168,6 +168,8 @@ class Blocks(gx.Translator):
 
     def _note(self, codes: dict[str, gx.Item], items: Sequence[gx.Item]) -> None:
         """Take notice of modes."""
+        if "G61" in codes and not self.reading.stays:
+            self._check_rounded(codes["G61"])
         if "G90" in codes or "G91" in codes:
             self.incremental = "G91" in codes
         self.corners = next((tables.CORNERS[c] for c in codes if c in tables.CORNERS), self.corners)
@@ -236,6 +238,12 @@ class Blocks(gx.Translator):
             what = "G60 is for one block, and how corners are taken behind it is not known"
             self.refuse(what, item, "write G5, G7 or G50 before")
         return [self.corners] if self.corners != "G61" else []
+
+    def _check_rounded(self, item: gx.Item) -> None:
+        """Refuse G61 where it counts whether it is for one block, as G60, and how near it goes."""
+        if self.corners != "G64" or self.reading.asides:
+            what = "whether G61 is for one block alone, and how near to the corner it goes,"
+            self.refuse(f"{what} is not known", item, "write G5, G7 or G50")
 
     def _dwell(self, items: Sequence[gx.Item]) -> str:
         """Return the block of a dwell in seconds."""

@@ -48,6 +48,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | G8, G9 | tangent arc, arc through three points: refused |
 | `G4 K2` | 2 seconds, alone in its block [post]; on an 8055 hundredths; other forms are refused |
 | G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |
+| G61 where corners are not rounded yet | refused: it may be for one block alone |
 | G17, G18, G19 | planes; G20 gives the plane other axes: refused |
 | D1 in G18, G19 | length across the plane: refused without `[control] tool-length-axis = "Z"` |
 | G41, G42 | the radius of the tool of D1; how corners are gone round is the control's |
@@ -73,7 +74,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | `#CS`, `#ACS`, `#CSROT`, `#TOOL ORI`, `#SELECT ORI` | inclined planes: refused, but for OFF |
 | `#TRAFO ON` | of ISG and Beckhoff; there D names a tool, and G8 and G9 are no arcs: refused |
 | `#HSC`, `#ROUNDPAR`, `#SLOPE`, `#FLUSH`, `#MSG` | move nothing, and are left out |
-| these and G50, where moves are written anew for a Fagor | they go along |
+| these and G50, where moves are written anew for a Fagor | they go along; G61 is refused |
 | `#TIME`, and all else behind `#` | refused |
 | `;`, `( )`, `(` to the end of the line | comments |
 | NR, #RPT, #MCALL, #EXEC | refused |
