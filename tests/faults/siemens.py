@@ -100,6 +100,13 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/compensated-with-cycle832]",
     ),
     Mutation(
+        "siemens: an arc by its angle that stays leads no axis elsewhere",
+        "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py",
+        '"ANG", "AR"))',
+        '"ANG"))',
+        f"{CASES}[dialects/siemens/kept-arc-by-its-angle]",
+    ),
+    Mutation(
         "siemens: half a structure is skipped",
         DECIDING,
         "if skipped and any(",

@@ -31,7 +31,8 @@ PATHS = frozenset(("CT", "CIP", "ASPLINE", "BSPLINE", "CSPLINE", "POLY", "INVCW"
 ENDS_OF_SPLINES = frozenset(("BAUTO", "BNAT", "BTAN", "EAUTO", "ENAT", "ETAN"))
 OTHER = "other"
 """A motion that is none of the blocks'."""
-POLAR = frozenset(("AP", "RP", "ANG"))
+POLAR = frozenset(("AP", "RP", "ANG", "AR"))
+"""What says by angles where X, Y and Z go, with no word of an axis."""
 LENGTHS = frozenset(("TOFF", "TOFFL", "DL", "TCARR", "CUTMOD"))
 """What changes the length of the tool: a step behind it adds that, or not (SD42442)."""
 MOVING = frozenset(("POS", "POSA", "POSP", "SPOSA", "LEAD", "TILT", "THETA"))
