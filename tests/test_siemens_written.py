@@ -121,6 +121,7 @@ WRONG = [
     ("M5", "", "events"),
     ("TURN=1", "TURN=2", "a turn"),
     ("F50", "F51", "feed"),
+    ("G64", "", "G64 is G53"),
 ]
 
 
@@ -132,7 +133,7 @@ def test_what_is_written_is_read_and_compared(right, wrong, why, monkeypatch):
         return [line.replace(right, wrong) for line in lines(self, block)]
 
     text = "T3 M6\nG43 H3\nG55\nG0 X1. Y2. Z3.\nG2 X5. Y2. I2. J0. F50.\nM8\nG4 P1."
-    text += "\nG2 X1. Y2. I-2. J0. P2\nG53 G0 Z0.\nM5"
+    text += "\nG2 X1. Y2. I-2. J0. P2\nG61\nG1 X2.\nG64\nX1.\nG53 G0 Z0.\nM5"
     said(text)
     monkeypatch.setattr(Lines, "lines", mistaken)
     with pytest.raises(gx.GcxformError, match=why):

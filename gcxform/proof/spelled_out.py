@@ -251,18 +251,25 @@ def _acts(path: Toolpath, dialect: type[Dialect]) -> list[tuple[int, str, Values
     """Return what happens between moves, but for what only says how words count: see `_frames`.
 
     The end of the file is one of the program, and no tolerance of the path is what there is before
-    the first one.
+    the first one, or the first exact stop.
     """
     found = [
         (e.row, e.what, e.values)
         for e in path.events
         if _group(e, dialect) not in COUNTS and (_act(e, dialect) != MACHINE or _moves(e, path))
     ]
-    bound = [k for k, each in enumerate(found) if each[1] == "G64" and any(v for _, v in each[2])]
+    bound = [k for k, each in enumerate(found) if _is_bound(each, dialect)]
     loose = min(bound, default=len(found))
     found = [each for k, each in enumerate(found) if k >= loose or each[1] != "G64"]
     found = [*_named_once(found)]
     return found[:-1] if found and found[-1][1] in ENDS else found
+
+
+def _is_bound(act: tuple[int, str, Values], dialect: type[Dialect]) -> bool:
+    """Whether corners are no longer rounded however the control has it: stops, or a tolerance."""
+    exact = dialect.codes.get(act[1])
+    stops = exact is not None and exact.group == "path" and exact.act.startswith("exact")
+    return stops or (act[1] == "G64" and any(value for _, value in act[2]))
 
 
 def _named_once(acts: list[tuple[int, str, Values]]) -> Iterator[tuple[int, str, Values]]:

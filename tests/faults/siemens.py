@@ -107,6 +107,20 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/kept-arc-by-its-angle]",
     ),
     Mutation(
+        "siemens: G64 is gone beside a message that names G642",
+        LINES,
+        ' if not each.upper().startswith("MSG")',
+        "",
+        f"{CASES}[dialects/siemens/compensated-with-a-code-in-a-message]",
+    ),
+    Mutation(
+        "siemens: behind an exact stop G64 may be gone",
+        SPELLED,
+        "return stops or (",
+        "return False or (",
+        COMPARED,
+    ),
+    Mutation(
         "siemens: half a structure is skipped",
         DECIDING,
         "if skipped and any(",
@@ -1043,8 +1057,8 @@ MUTATIONS = (
     Mutation(
         "siemens: a tolerance stands beside the G64 that takes its place",
         LINES,
-        "if any(BLENDS.search(each) for each in asides):",
-        "if False:",
+        "if any(BLENDS.search(each) for each in asides if",
+        "if any(False for each in asides if",
         f"{CASES}[dialects/siemens/compensated-with-asides]",
     ),
     Mutation(

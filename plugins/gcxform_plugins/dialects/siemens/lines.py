@@ -57,7 +57,7 @@ class Lines(gx.Speller):
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         asides, comments, words = self.heard(block)
-        if any(BLENDS.search(each) for each in asides):
+        if any(BLENDS.search(each) for each in asides if not each.upper().startswith("MSG")):
             words = [each for each in words if each != ("G", "64")]
         slash = SLASH.match(block)
         said = [*asides, *self._said(words)]
