@@ -121,6 +121,13 @@ MUTATIONS = (
         COMPARED,
     ),
     Mutation(
+        "siemens: REPEAT without P is none where P counts all passes",
+        DECIDING,
+        'if said is None and self.reading.control.get(REPEATS) != "further":',
+        "if False:",
+        f"{CASES}[dialects/siemens/repeat-label-once]",
+    ),
+    Mutation(
         "siemens: half a structure is skipped",
         DECIDING,
         "if skipped and any(",

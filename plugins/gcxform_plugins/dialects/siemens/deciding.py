@@ -235,6 +235,10 @@ class Deciding(Variables):
         """Return what P of a REPEAT says. Raises InputError, NoValueError."""
         nodes: list[Any] = node.children
         said = next((each for each in nodes if rule_of(each) == "times"), None)
+        if said is None and self.reading.control.get(REPEATS) != "further":
+            self._elsewhere(
+                "REPEAT without P, which may be once more or once in all", "write its P"
+            )
         number = 1.0 if said is None else self._whole(said.children[-1], "P")
         if not 1 <= number <= MOST:
             self.refuse(f"REPEAT for {number:g} times")
