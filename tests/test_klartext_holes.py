@@ -108,7 +108,7 @@ def test_strokes_become_shorter():
         (DEEP.format(6, 0, 0.5, 0.5), "several strokes, upwards"),
         (DEEP.format(0, 0, 0.5, 0.5).replace("Q257=0", "Q257=2"), "chips that are broken"),
         ("CYCL DEF 202 BORING Q200=2", "a boring bar"),
-        ("CYCL DEF 207 RIGID TAPPING NEU Q200=2", "tied to the spindle"),
+        ("CYCL DEF 206 TAPPING NEU Q200=2", "tied to the spindle"),
         ("CYCL DEF 208 BORE MILLING Q200=2", "no manual tells"),
         ("CYCL DEF 262 THREAD MILLING Q335=5", "no manual tells"),
         ("CYCL DEF 257 CIRCULAR STUD Q223=50", "a stud"),

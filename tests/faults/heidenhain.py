@@ -45,6 +45,27 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: a tap is read whichever way the spindle turns before it",
+        CYCLES,
+        "if self.spindle != sense or again is None:",
+        "if again is None:",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-tap-of-the-other-hand]",
+    ),
+    Mutation(
+        "klartext: behind a tap the spindle is taken to turn",
+        CYCLES,
+        "if self.spindle != sense or again is None:",
+        "if self.spindle != sense:",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-tap-then-no-spindle]",
+    ),
+    Mutation(
+        "klartext: a cycle that is defined behind a tap is taken to be known still",
+        DRILLING,
+        'if bare.startswith("CYCL DEF 2"):',
+        'if bare.startswith("CYCL DEF 200"):',
+        "tests/test_corpus.py::test_case[dialects/across/tap-between-holes-for-klartext]",
+    ),
+    Mutation(
         "klartext: what stands beside the size of a corner is passed over",
         CONTOURS,
         "if len(sizes) > 1 or others != sizes:",

@@ -24,6 +24,7 @@ CASES = "tests/test_corpus.py::test_case"
 TIPS = "tests/test_siemens.py::test_five_axes_become_what_the_same_program_by_hand_becomes"
 CONTOURS = "plugins/gcxform_plugins/dialects/siemens/contours.py"
 POLAR = "plugins/gcxform_plugins/dialects/siemens/polar.py"
+TAPPING = "plugins/gcxform_plugins/dialects/siemens/tapping.py"
 GATHERING = "plugins/gcxform_plugins/dialects/siemens/gathering.py"
 LINES = "plugins/gcxform_plugins/dialects/siemens/lines.py"
 SPELLED = "gcxform/proof/spelled_out.py"
@@ -43,6 +44,34 @@ LINES_BESIDE = "tests/test_siemens_lines.py"
 STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
+    Mutation(
+        "siemens: a tap is read whichever way the spindle turns before it",
+        BLOCKS,
+        "if tap.sense != self.spindle or ",
+        "if ",
+        f"{CASES}[dialects/siemens/tap-of-the-other-hand]",
+    ),
+    Mutation(
+        "siemens: the pitch of a tap of M4 is positive",
+        TAPPING,
+        'pitch = tap.pitch if tap.sense == "M3" else f"-{tap.pitch}"',
+        "pitch = tap.pitch",
+        f"{CASES}[dialects/across/tap-in-step-for-siemens]",
+    ),
+    Mutation(
+        "siemens: behind a tap the feed is taken to be in force",
+        BLOCKS,
+        "self.feed_open = OTHER, CODE, None, True",
+        "self.feed_open = OTHER, CODE, None, False",
+        f"{CASES}[dialects/siemens/tap-then-no-feed]",
+    ),
+    Mutation(
+        "siemens: a tap may come back to elsewhere",
+        BLOCKS,
+        'self.place.known("Z") != Decimal(tap.top)',
+        'self.place.known("Z") is None',
+        f"{CASES}[dialects/siemens/tap-that-ends-elsewhere]",
+    ),
     Mutation(
         "siemens: what is compensated is written for another control alone",
         "gcxform/pipeline/own_language.py",

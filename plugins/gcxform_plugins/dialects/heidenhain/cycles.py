@@ -13,6 +13,8 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     HOLES,
     OTHERS,
     PATTERNS,
+    TAP,
+    TAPPED,
     round_places,
     row_places,
     strokes_of,
@@ -68,6 +70,9 @@ class Cycles(Datums):
             return []
         if number in PATTERNS:
             return self._pattern(item, number, self._parameters(item, text))
+        if number == TAP and not self.reading.stays:
+            self.hole, self.cycle = self._parameters(item, text), TAP
+            return []
         if number == 1:
             return self._peck(item, part, text)
         why = OTHERS.get(number, "a cycle of the control")
@@ -130,7 +135,7 @@ class Cycles(Datums):
 
     def assigned(self, key: str) -> None:
         """Forget a cycle of which a parameter is set: whether it then counts is not known."""
-        hole = HOLES.get(self.cycle)
+        hole = TAPPED if self.cycle == TAP else HOLES.get(self.cycle)
         if hole is None:
             return
         if key in self.refers or (key[1:].isdigit() and int(key[1:]) in hole.needs):
@@ -201,6 +206,8 @@ class Cycles(Datums):
         self._check_cycle(item)
         if self.cycle in HOLES:
             return self._hole(item, self.hole)
+        if self.cycle == TAP:
+            return self._tapped(item, self.hole)
         if self.cycle == 1:
             return self._pecked(item)
         raise self.refusal("GX215", "no cycle that is known here has been defined", item)
@@ -234,6 +241,35 @@ class Cycles(Datums):
         if self.cycle in SLOWLY:
             blocks.append(f"Z{exact(up)}{self.feed_word(exact(told[208] or feed))}")
         return self._out(blocks, exact(surface + high) if high else exact(up))
+
+    def _tapped(self, item: gx.Item, told: Mapping[int, Decimal]) -> list[str]:
+        """Return the blocks of a tap in step with the spindle: to the ground, and back.
+
+        Whether the spindle turns again behind it is not certain: the next line has to say so.
+        """
+        if told.keys() != {*TAPPED.needs} or self.inch or self.mirrored != "":
+            message = "cycle 207 in inches or a mirror image, with fewer parameters, or with more"
+            raise self.refusal("GX215", message, item, ALONE)
+        clear, depth, pitch, surface, high = (told[n] for n in TAPPED.needs)
+        if clear < 0 or 0 < high < clear or depth >= 0 or not pitch:
+            message = "cycle 207 upwards, without a pitch, or with Q204 below Q200"
+            raise self.refusal("GX215", message, item, ALONE)
+        sense = "M3" if pitch > 0 else "M4"
+        behind = self.lines[self.at] if self.at < len(self.lines) else ""
+        again = re.fullmatch(rf"\s*(?:\d+\s+)?{sense}\s*", behind)
+        if self.spindle != sense or again is None:
+            message = f"cycle 207, with {sense} not before it and in the line behind it"
+            hint = f"write {sense} there: whether the spindle then stands is not certain"
+            raise self.refusal("GX215", message, item, hint)
+        self.at += 1
+        up = exact(surface + clear)
+        over = [] if self.place.get("Z") == up else [f"G0 Z{up}"]
+        blocks = [*over, f"G33.1 Z{exact(surface + depth)} K{exact(abs(pitch))}"]
+        out = self._out(blocks, exact(surface + high) if high else up)
+        if high > clear:
+            return out
+        self.motion = "G33.1"
+        return blocks
 
     def _above(self, item: gx.Item, told: Mapping[int, Decimal], room: Decimal) -> Decimal:
         """Return how far over the ground a stroke begins to feed. Raises InputError."""

@@ -64,6 +64,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |
+| cycle 207, M3 or M4 before and behind it | a tap in step with the spindle | TNC 320, p. 238 |
 | cycles 201, 203, 240, 220, 221 | as `holes.py` says; several rows, Q301=0: refused | 640, p. 162 |
 | PATTERN DEF POS, CYCL CALL PAT FMAX | the places in their order; from Q203 + Q204 only | 640 |
 | other patterns, CYCL CALL POS, PAT with F | refused | |
@@ -105,6 +106,7 @@ class Heidenhain(gx.Dialect):
         **v.ISO,
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
         **{code: gx.Code("cutter-comp", takes="D", lengths="D") for code in ("G41.1", "G42.1")},
+        "G33.1": gx.Code("motion"),
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
         "G50.1": v.frame("mirror", "no-mirror", v.AXES),

@@ -8,7 +8,7 @@ deep hole stay moves: how far above the ground the cycle begins to feed again is
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
@@ -35,6 +35,13 @@ NAMES = {
     203: "SURFACE COORDINATE",
     204: "2ND SET-UP CLEARANCE",
     211: "DWELL TIME AT DEPTH",
+}
+TAP_NAMES = {
+    200: "SET-UP CLEARANCE",
+    201: "DEPTH OF THREAD",
+    239: "THREAD PITCH",
+    203: "SURFACE COORDINATE",
+    204: "2ND SET-UP CLEARANCE",
 }
 Line = tuple[str, int]
 
@@ -97,8 +104,10 @@ class Drilling:
         elif self.owed and CUTS.match(bare):
             head, mark, rest = text.partition(" ;")
             text, self.owed = f"{head} F{self.owed}{mark}{rest}", ""
-        if bare.startswith("CYCL DEF 200"):
+        if bare.startswith("CYCL DEF 2"):
             self.told = ()
+        if bare.startswith("CYCL DEF 207"):
+            self.owed = self.feed
         return text, of
 
     def _hole(self, at: int, height: Decimal | None) -> Hole | None:
@@ -145,9 +154,24 @@ def _height(text: str) -> Decimal | None:
     return None if found is None else Decimal(found[1])
 
 
+def tapped(start: Decimal, bottom: Decimal, pitch: Decimal) -> Iterator[str]:
+    """Yield the lines of a tap in step with the spindle, from where the tool stands and back."""
+    clear = min(CLEAR, (start - bottom) / 2)
+    surface = start - clear
+    values = clear, bottom - surface, pitch, surface, clear
+    yield from _defined("207 RIGID TAPPING NEW", TAP_NAMES, [exact(each) for each in values])
+    yield "CYCL CALL"
+    yield "M3" if pitch > 0 else "M4"
+
+
 def defined(told: Sequence[str]) -> Iterator[str]:
     """Yield the lines that define cycle 200."""
-    yield "CYCL DEF 200 DRILLING ~"
-    for (number, name), value in zip(NAMES.items(), told, strict=True):
+    return _defined("200 DRILLING", NAMES, told)
+
+
+def _defined(cycle: str, names: Mapping[int, str], told: Sequence[str]) -> Iterator[str]:
+    """Yield the lines that define a cycle."""
+    yield f"CYCL DEF {cycle} ~"
+    for (number, name), value in zip(names.items(), told, strict=True):
         sign = "" if value.startswith("-") else "+"
-        yield f"  Q{number}={sign}{value} ;{name}{'' if number == 211 else ' ~'}"
+        yield f"  Q{number}={sign}{value} ;{name}{'' if name == [*names.values()][-1] else ' ~'}"

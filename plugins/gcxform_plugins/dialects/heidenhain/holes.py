@@ -6,6 +6,7 @@
 | 200 in strokes | between: up, Q210, down to `peck-clearance` over the ground, in rapid | [K] |
 | 205 | the same strokes, Q212 shorter each, Q205 at least; down to Q258 over the ground | 640 |
 | 201 | the same, but to Q200 over Q203 at Q208, at Q206 where that is 0 | a simulator of TNC 426 |
+| 207 | to Q200 over Q203, in step with the spindle to Q201 and back there, as G33.1 | 320 p. 238 |
 | 203 | as 201, where Q202 is as deep as the hole: then it is one stroke | TNC 430, p. 244 |
 | 220 | Q241 holes from Q245 on, by Q247; where that is 0 up to Q246, or around | 640, p. 162 |
 | 221 | Q242 holes from Q225, Q226 on, by Q237 along Q224 | 410 ISO, p. 257 |
@@ -54,6 +55,8 @@ HOLES: Mapping[int, Hole] = {
     ),
     240: Hole((200, 343, 201, 206, 211, 203, 204), {343: "a depth by the diameter"}, (344,)),
 }
+TAP = 207
+TAPPED = Hole((200, 201, 239, 203, 204))
 OTHERS: Mapping[int, str] = {
     **dict.fromkeys((202, 204), "a boring bar that an oriented spindle takes off the wall"),
     **dict.fromkeys((206, 207, 209, 2, 17, 18), "a thread whose feed is tied to the spindle"),

@@ -142,6 +142,7 @@ class Klartext(Cycles):
 
     def stop(self, items: Sequence[gx.Item]) -> list[str]:
         """STOP: the program waits."""
+        self.spindle = ""
         return self._all(self.said(items[1:]), "M0")
 
     def functions(self, items: Sequence[gx.Item]) -> list[str]:
@@ -226,7 +227,8 @@ class Klartext(Cycles):
         For the same control lengths need not be known.
         """
         self.refuse_beside("TOOL CALL", item)
-        tool = self.in_spindle = self.tool
+        tool, self.spindle = self.tool, ""
+        self.in_spindle = tool
         if self.dialect.m_codes[6].loses_position:
             self.lose()
         if self.reading.stays:

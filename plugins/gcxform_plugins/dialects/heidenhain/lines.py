@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator
 from decimal import Decimal
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.drilling import Drilling
+from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
@@ -28,6 +28,9 @@ LAST = 88  # M functions above are those of the control
 TIP = (128, 129)
 BEHIND = frozenset((0, 1, 2, 30))
 """M functions that act behind the move of a block of words; all others do before it."""
+QUIET = frozenset(("M1", "M7", "M8", "M9"))
+"""M functions that leave the spindle as it is."""
+TAP = "G33.1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
@@ -50,7 +53,7 @@ class Lines(gx.Speller):
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
         self.steps = self.over = self.bounded = False
-        self.tool = self.in_spindle = self.speed = ""
+        self.tool = self.in_spindle = self.speed = self.spindle = ""
         self.side = self.waits = " R0"
         self.turns = Decimal(0)
 
@@ -75,8 +78,8 @@ class Lines(gx.Speller):
         return [line if line[0] == " " else f"{next(count)} {line}" for line in lines]
 
     def lose(self) -> None:
-        """Forget where the axes stand."""
-        self.place = {}
+        """Forget where the axes stand, and whether the spindle turns."""
+        self.place, self.spindle = {}, ""
 
     # --- blocks ---
 
@@ -89,7 +92,9 @@ class Lines(gx.Speller):
         codes = [_code(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*self._said(codes, values)] if codes or values else []
-        if comment is not None and found:
+        if comment is not None and found and found[0].endswith("~"):
+            found.insert(0, f"; {comment}")
+        elif comment is not None and found:
             found[0] += f" ; {comment}"
         elif comment is not None:
             found = [f"; {comment}"]
@@ -110,6 +115,9 @@ class Lines(gx.Speller):
             yield f"CYCL DEF 9.1 DWELL {_plain(values.pop('P', '0'))}"
         yield from self._tools(codes, values)
         yield from (f"M{int(c[1:])}" for c in ahead)
+        for code in functions:
+            if code not in QUIET:
+                self.spindle = code if code in ("M3", "M4") else ""
         yield from self._moves(codes, values)
         for each in functions:
             if each not in ahead:
@@ -118,7 +126,7 @@ class Lines(gx.Speller):
     def _modes(self, codes: list[str]) -> None:
         """Take codes that stay in force. Raises UnspeakableError for those of no TNC."""
         for code in codes:
-            if code in ("G0", "G1", "G2", "G3"):
+            if code in ("G0", "G1", "G2", "G3", TAP):
                 self.motion = code
             elif code in ("G17", "G18", "G19"):
                 self.plane = code
@@ -184,6 +192,8 @@ class Lines(gx.Speller):
         elif "G53" in codes:
             yield f"L{_words(ends)} R0{self._rapid(feed)} M91"
             self._forget(ends)
+        elif self.motion == TAP and ends:
+            yield from self._tap(ends, Decimal(values.pop("K", "0")))
         elif self.motion in ("G2", "G3") and (ends or values):
             yield from self._arc(ends, values, feed)
         elif ends:
@@ -195,6 +205,18 @@ class Lines(gx.Speller):
             yield f"L{feed}"
         if left := [letter for letter in values if letter not in "DH"]:
             raise gx.UnspeakableError(f"{left[0]} has no words in Klartext")
+
+    def _tap(self, ends: dict[str, Decimal], pitch: Decimal) -> Iterator[str]:
+        """Yield cycle 207 from where the tool stands. Raises UnspeakableError."""
+        if self.inch:
+            raise gx.UnspeakableError("a tap of a program in inches is not read")
+        if {*ends} != {"Z"} or self.steps or self.plane != "G17" or self.waits != " R0":
+            raise gx.UnspeakableError("a tap by steps, or along another axis than Z in G17")
+        if "Z" not in self.place or not ends["Z"] < self.place["Z"] or not pitch > 0:
+            raise gx.UnspeakableError("a tap from where it is not known, upwards, or without pitch")
+        if not self.spindle:
+            raise gx.UnspeakableError("a tap, and which way the spindle turns is not said before")
+        yield from tapped(self.place["Z"], ends["Z"], pitch if self.spindle == "M3" else -pitch)
 
     def _side(self, codes: list[str], values: dict[str, str]) -> str:
         """Return R0, RL or RR where a block says it. Raises UnspeakableError."""

@@ -13,6 +13,8 @@ AT_START = {13: ("M3", "M8"), 14: ("M4", "M8")}
 AT_END = {0: ("M5", "M0"), 1: ("M1",), 5: ("M5",), 6: ("M6",), 9: ("M9",), 129: ("M129",)}
 ENDS = (2, 30)
 CALLS = 99
+TURNS = {3: "M3", 13: "M3", 4: "M4", 14: "M4"}
+LEAVES_SPINDLE = frozenset({1, 7, 8, 9, 91, 99, 126, 127, 128, 129})
 LONGEST_M = 4  # digits
 MACHINE = 91
 NEVER_BESIDE = (6, 91, 128, 129)
@@ -136,6 +138,7 @@ class Saying(Words):
         if not text.isdigit() or len(text) > LONGEST_M:
             raise self.refusal("GX101", f"M{text} is no M function", item)
         code = int(text)
+        self.spindle = self.spindle if code in LEAVES_SPINDLE else TURNS.get(code, "")
         if code in NEVER_BESIDE:
             self.refuse_beside(f"M{code}", item)
         if code == MACHINE:

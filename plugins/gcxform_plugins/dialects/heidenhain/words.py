@@ -57,6 +57,7 @@ class Words(gx.Translator):
               has no direction in X and Y
     moved     axes that have moved to a place of the workpiece since the program began
     side      G41 or G42 where RL or RR is in force
+    spindle   M3 or M4, as it turns; nothing where it stands, or that is not known
     plane     G17, G18 or G19, as blocks have it
     deltas    DL and DR of the tool in the spindle, as TOOL CALL has said
     turn      degrees by which X and Y are turned;  mirrored: the axes that are; None: not known
@@ -85,7 +86,7 @@ class Words(gx.Translator):
         self.inch = False
         self.following = False
         self.shortest = False
-        self.side = ""
+        self.side = self.spindle = ""
         self.deltas: dict[str, Decimal] = {}
         self.turn: Decimal | None = Decimal(0)
         self.mirrored: str | None = ""

@@ -11,12 +11,15 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
 from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
+from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
+from gcxform_plugins.dialects.siemens.tapping import CODE, LINES, SPOS, Tap, tap_at, turned
 
 FEED = "write F in this block, or before"
 CHANGE = 6
@@ -27,9 +30,11 @@ class Blocks(Contours):
     """Turns the lines of a SINUMERIK into blocks of words.
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
+    spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
     """
 
     feed_open = False
+    spindle = speed = ""
 
     grammar = ("gcxform_grammars", "siemens")
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
@@ -43,6 +48,9 @@ class Blocks(Contours):
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line, the first with its number. Raises InputError."""
+        spindle = not self.reading.stays and any(item.name.startswith(SPOS) for item in items)
+        if spindle and (tap := tap_at(self.lines, self.line)):
+            return self._tapped(tap, items[-1])
         line = Line()
         for item in items:
             self.read.get(item.kind, self.unread)(line, item)
@@ -61,6 +69,22 @@ class Blocks(Contours):
         if made and line.number:
             made[0] = line.number + made[0]
         return made
+
+    def _tapped(self, tap: Tap, item: gx.Item) -> list[str]:
+        """Return the block of a tap in step with the spindle, and pass its lines."""
+        if tap.sense != self.spindle or not self.speed or Decimal(tap.speed) != Decimal(self.speed):
+            message = f"a tap, with {tap.sense} S{tap.speed} not in force before it"
+            self.refuse(message, item, "write it in a line before")
+        beside = self.following or self.comp or self.drilling or self.steps
+        if beside or self.plane != "XY" or self.frame != Frame() or self.feed_mode in ("93", "95"):
+            self.refuse("a tap in steps, in a frame, or beside what changes its way", item)
+        self.check_plane(item)
+        if (self.changed and self.edge is None) or self.place.known("Z") != Decimal(tap.top):
+            self.refuse("a tap that does not come back to where the tool is known to stand", item)
+        self.at = self.line + len(LINES)
+        self.motion, self.said, self.along, self.feed_open = OTHER, CODE, None, True
+        codes = self.distance_code(Line(), False)
+        return [" ".join([*tap.number, *codes, f"G{CODE} Z{tap.bottom} K{tap.pitch}"])]
 
     def comment(self, text: str) -> str:
         """Return the comment of a block for one of a line, or what the operator is told by it."""
@@ -173,6 +197,13 @@ class Blocks(Contours):
         self.along = None
 
     # --- tools ---
+
+    def _other(self, line: Line, item: gx.Item, letter: str, number: str) -> None:
+        if letter == "M":
+            self.spindle = turned([f"M{number.lstrip('0') or '0'}"], self.spindle)
+        elif letter == "S":
+            self.speed = number
+        super()._other(line, item, letter, number)
 
     def _tooled(self, line: Line) -> Iterator[str]:
         """Yield the blocks of T, M6 and D, in this order."""

@@ -75,6 +75,7 @@ kept as it stands, with all that is lost behind it.
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | CYCLE89, CYCLE85 | out at the feed, at RFF; behind CYCLE85 F must be programmed again | C81 |
 | CYCLE83 | alike strokes; only with VARI, and DIS1 or VRT, and without DAM | C81 |
+| SPOS=0, G331, G332, M3 S in four lines | a tap in step with the spindle: `tapping.py` | cncforum |
 | MCALL | that behind each line with axis words | C81 |
 | HOLES1 under MCALL | from the first on, where the tool is nearer to that; else refused | [K] |
 | HOLES2 under MCALL | holes on a circle, in the order of their numbers, by lines | OM 286 |
@@ -120,7 +121,8 @@ Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programmin
 (6FC5398-2EP40-0BA0), F Fundamentals 11/2006, 808D Programming 01/2014 (6FC5398-4DP10-0BA1), OM
 Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling
 04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B), R2 Axes and spindles
-06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81. [K]: not looked up.
+06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81; cncforum.net on
+G331. [K]: not looked up.
 
 To the same control, by passes that keep positions, a line stays that cannot be said in blocks:
 
@@ -159,6 +161,7 @@ class Siemens(gx.Dialect):
         "G95": gx.Code("feed-mode"),
         **{code: gx.Code("arc-distance") for code in ("G90.1", "G91.1")},
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},
+        "G33.1": gx.Code("motion"),
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
         "G9": v.at_end("non-modal"),

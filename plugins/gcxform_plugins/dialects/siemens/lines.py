@@ -14,6 +14,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.siemens.gathering import gathered
 from gcxform_plugins.dialects.siemens.place import text_of
 from gcxform_plugins.dialects.siemens.reading import WORK
+from gcxform_plugins.dialects.siemens.tapping import CODE, Tap, lines_of, turned
 
 OFFSETS = {name: f"G{number}" for number, name in WORK.items()}
 CODES = {
@@ -32,6 +33,11 @@ SAME = frozenset(
     )
 )
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
+TAP = f"G{CODE}"
+MOTIONS = frozenset(("G0", "G1", "G2", "G3", TAP))
+CUTS = MOTIONS - {"G0", TAP}
+MOVES_ZERO = frozenset(("G20", "G21", "G43", "G49", "G53", "M6", "G68", "G69", *OFFSETS))
+AXES = frozenset("XYZABC")
 BLENDS = re.compile(r"G64[1-5]")
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
 OWN = (17, 128, 129, 9000)
@@ -44,6 +50,9 @@ class Lines(gx.Speller):
     tool      that of the last T, and `in_spindle`
     length    the number of the one in force, "0" for none, nothing where none has been said: behind
               M6 the machine file then says which edge is in force, or nothing may move
+    height    where Z stands, None where that is not known
+    spindle   M3 or M4, as it turns, or nothing;  speed: the S in force
+    feed      the F in force;  owed: behind a tap it has to be said again
     waits     M6 or SUPA has been, and D has not yet: it is said before Z moves, or by the next code
     """
 
@@ -52,7 +61,15 @@ class Lines(gx.Speller):
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(name, inch)
         self.tool = self.in_spindle = self.length = ""
-        self.waits = False
+        self.waits = self.steps = False
+        self.height: Decimal | None = None
+        self.spindle = self.speed = self.motion = self.feed = ""
+        self.owed = False
+        self.plane = "G17"
+
+    def lose(self) -> None:
+        """Forget where the axes stand, and whether the spindle turns."""
+        self.height, self.spindle = None, ""
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
@@ -78,6 +95,10 @@ class Lines(gx.Speller):
         values = dict(words)
         self._check_m(names)
         number = f"N{values['N']} " if "N" in values else ""
+        self._modes(names, values)
+        if self.motion == TAP and not values.keys().isdisjoint(AXES):
+            yield from self._tap(number, values, names)
+            return
         if "G4" in names:
             yield f"{number}G4 F{values.pop('P', '0')}"
             words = [each for each in words if each[0] not in "NPG"]
@@ -87,6 +108,9 @@ class Lines(gx.Speller):
         else:
             yield from self._tooled(number, names, values)
         said = [*self._words(words, values)]
+        if self.owed and self.motion in CUTS and not values.keys().isdisjoint(AXES | {*"IJKR"}):
+            said += [f"F{self.feed}"] if "F" not in values and self.feed else []
+            self.owed = False
         if any(word[0] != "N" for word in said):
             yield " ".join(said)
 
@@ -94,6 +118,44 @@ class Lines(gx.Speller):
         own = [name for name in names if name[0] == "M" and name[1:] in map(str, OWN)]
         if own:
             raise gx.UnspeakableError(f"{own[0]} is a function of the machine, or of blocks")
+
+    # --- taps ---
+
+    def _modes(self, names: list[str], values: dict[str, str]) -> None:
+        """Take what is in force for taps, and where Z then stands."""
+        for name in names:
+            if name in MOTIONS:
+                self.motion = name
+            elif name in ("G17", "G18", "G19"):
+                self.plane = name
+            elif name in ("G90", "G91"):
+                self.steps = name == "G91"
+        self.spindle = turned([name for name in names if name[0] == "M"], self.spindle)
+        self.speed = text_of(Decimal(values["S"])) if "S" in values else self.speed
+        self.feed = text_of(Decimal(values["F"])) if "F" in values else self.feed
+        if not {*names}.isdisjoint(MOVES_ZERO):
+            self.height = None
+        if "Z" in values and self.motion != TAP:
+            here = not self.steps and {*names}.isdisjoint(("G53", "M6"))
+            self.height = Decimal(values["Z"]) if here else None
+
+    def _tap(self, number: str, values: dict[str, str], names: list[str]) -> Iterator[str]:
+        """Yield the lines of a tap from where the tool stands. Raises UnspeakableError."""
+        others = {name for name in names if name[0] in "GM"} - {TAP, "G90"}
+        if values.keys() - {*"NGZK"} or others or self.steps or self.plane != "G17":
+            raise gx.UnspeakableError("a tap by steps, beside other words, or out of G17")
+        bottom, pitch = Decimal(values.get("Z", "0")), Decimal(values.get("K", "0"))
+        if self.height is None or "Z" not in values or not bottom < self.height or not pitch > 0:
+            raise gx.UnspeakableError("a tap from where it is not known, upwards, or without pitch")
+        if not self.spindle or not self.speed:
+            raise gx.UnspeakableError("a tap, and how the spindle turns is not said before")
+        if self.waits:
+            yield self._edge
+        top, end, by = (text_of(each) for each in (self.height, bottom, pitch))
+        first, *rest = lines_of(Tap(top, end, by, self.spindle, self.speed))
+        self.owed = True
+        yield number + first
+        yield from rest
 
     # --- tools ---
 
