@@ -50,6 +50,13 @@ MUTATIONS = (
         f"{CASE}steps-in-brackets]",
     ),
     Mutation(
+        "fagor: another change of a tool takes the tool of the last T",
+        LINES,
+        'if "M6" in names and not (self.chosen or "T" in values):',
+        "if False:",
+        f"{CASE}change-of-no-tool]",
+    ),
+    Mutation(
         "fagor: what says how near to a corner is left out for the same control",
         BLOCKS,
         "if head in tables.INERT and self.reading.asides:",

@@ -32,7 +32,7 @@ ENDS = ("M2", "M30")
 class Lines(gx.Speller):
     """Writes blocks as lines for a Fagor.
 
-    tool    that of the last T, and `in_spindle`
+    tool    that of the last T, and `in_spindle`;  chosen: T has been since M6
     length  that of which tool is in force, "0" for none
     waits   M6 or a place of the machine has been, and D has not yet: it is said before a move
     bare    D0 was said last
@@ -46,7 +46,7 @@ class Lines(gx.Speller):
         bare = f"P{bare}" if bare.startswith("L") else bare
         super().__init__(bare[:LONGEST], inch)
         self.tool = self.in_spindle = self.length = "0"
-        self.waits = self.over = self.bare = False
+        self.waits = self.over = self.bare = self.chosen = False
 
     def opening(self) -> list[str]:
         """Return the first line."""
@@ -85,10 +85,14 @@ class Lines(gx.Speller):
         """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError."""
         if "T" in values:
             self.tool = _plain(values["T"])
+        if "M6" in names and not (self.chosen or "T" in values):
+            raise gx.UnspeakableError("M6, and which tool it takes is not said before")
         if "M6" in names:
             self.in_spindle, self.waits, self.bare = self.tool, True, False
             yield f"T{self.tool} M6"
+            self.chosen = False
         elif "T" in values:
+            self.chosen = True
             yield f"T{self.tool}"
         before = self.length
         if "G43" in names:
