@@ -3,7 +3,8 @@
     python benchmarks/round_trips.py [CORPUS] [--to NAME] [--from NAME] [--list] [--keep FOLDER]
                                      [--bare]
 
-The programs are those of `corpus.py`, with the machines that it gives them. What counts is a
+The programs are those of `corpus.py`, with the machines that it gives them and what their users
+know besides (`round_trips.toml`). What counts is a
 program without macros that goes through `absolute` in its own dialect, and is no file of a
 subprogram. *Round* is one that is proved on both ways, and whose three programs `compare` the same
 within what rounding does; codes that both certificates list as said otherwise are not compared.
@@ -17,11 +18,13 @@ import argparse
 import itertools
 import re
 import sys
+import tomllib
 from collections import Counter
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from msgspec import structs
 from translation import WAYS, offered, taken
@@ -37,7 +40,7 @@ from gcxform.pipeline.pipeline import Pipeline, Result
 from gcxform.pipeline.translated_moves import CHORD_ERROR
 from gcxform.pipeline.translated_moves import SAID as SPLINES
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.path import Toolpath
+from gcxform.toolpath.path import Event, Toolpath
 
 TARGETS = ("heidenhain", "siemens", "fagor")
 SOURCES = ("linuxcnc", "fanuc")
@@ -53,8 +56,10 @@ CONTROL = {
 }
 """What a user knows of each control: on a mill lengths stay along Z (SD42940), and none of them
 moves an axis by itself; F is in the unit of the program."""
+KNOWN = HERE / "round_trips.toml"
 LONGEST = 200_000  # bytes
 SAID = re.compile(r"(\S+)(?: [A-Z]+)? is (?:left out|a comment|said as (\S+))")
+CENTRED = "cutter-comp"
 OUTPUT = ("drop", "inert")
 """What a user gives of the output where a hint offers it."""
 TOLERANCE = 0.002  # mm: twice what a program is rounded by
@@ -80,11 +85,12 @@ def round_trip(job: Job, target: str, keep: Path | None = None, bare: bool = Fal
 def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
     registry = default_registry()
     known = {**CONTROL.get(job.dialect, {}), **CONTROL.get(target, {})}
+    known |= {key: said for user in users(job) for key, said in user.get("control", {}).items()}
     made, chain = _made(job, known), parse_chain("absolute", HERE, registry)
     there = registry.dialect(target)
     reading = made.machine_reading
     bare = _bare(reading, known)
-    way = replace(made, target=there, passes=(), numbers=NUMBERS)
+    way = replace(made, target=there, passes=(), numbers=NUMBERS, inert=_back(job))
     way, said = by_hints(way, job.corpus / job.path, ways)
     here, there = (
         with_inert(kind, way.inert & {f"M{number}" for number in kind.m_codes})
@@ -93,8 +99,10 @@ def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
     if keep is not None:
         (keep / job.path.replace("/", "__")).write_bytes(said.text)
     anew = replace(made, source=there, target=here, passes=tuple(chain), numbers=NUMBERS)
+    anew = replace(anew, inert=_back(job))
     _, back = by_hints(replace(anew, reading=bare), said.text, ways)
-    texts = (job.text, here, reading), (said.text, there, bare), (back.text, here, bare)
+    first = _beside(way, job.text, made)
+    texts = (first, here, reading), (said.text, there, bare), (back.text, here, bare)
     programs = [gx.Program(text, kind, replace(of, curves=True)) for text, kind, of in texts]
     lines = SPLINES in (*said.certificate.assumed, *back.certificate.assumed)
     near = TOLERANCE + CHORD_ERROR * lines
@@ -102,6 +110,12 @@ def _round_trip(job: Job, target: str, keep: Path | None, ways: int) -> Outcome:
         if why := apart(one, other, told(said, back), near):
             return Outcome(job, "DIFFERS", f"{one.dialect.name} to {other.dialect.name}: {why}")
     return Outcome(job)
+
+
+def _beside(way: Pipeline, text: bytes, made: Pipeline) -> bytes:
+    """Return a program, with the path of the centre where the one there has no contour any more."""
+    centred = any(step.name == CENTRED for step in way.passes)
+    return replace(made, passes=way.passes, numbers=NUMBERS).run(text).text if centred else text
 
 
 def by_hints(made: Pipeline, program: Path | bytes, ways: int) -> tuple[Pipeline, Result]:
@@ -118,19 +132,49 @@ def by_hints(made: Pipeline, program: Path | bytes, ways: int) -> tuple[Pipeline
             added.append(step_name(step))
 
 
-def _made(job: Job, known: Mapping[str, str]) -> Pipeline:
+def _made(job: Job, known: Mapping[str, str | float]) -> Pipeline:
     """Return the pipeline of a program, with what is known of the control that it is said to."""
     made = filled_in(job.dialect, job.path, "absolute", job.corpus)
+    for user in users(job):
+        known = {**known, **user.get("control", {})}
+        made = _told(made, user)
     if made.machine is None:
         return replace(made, reading=replace(made.reading, control=known))
     control = {**made.machine.control, **known}
     return replace(made, machine=structs.replace(made.machine, control=control))
 
 
-def _bare(reading: Reading, control: Mapping[str, str]) -> Reading:
+def users(job: Job) -> list[dict[str, Any]]:
+    """Return what users know of a program, and were never asked for."""
+    said: list[dict[str, Any]] = tomllib.loads(KNOWN.read_text("utf-8"))["user"]
+    return [each for each in said if re.search(each["programs"], job.path)]
+
+
+def _back(job: Job) -> frozenset[str]:
+    """Return the M codes behind which axes stand where they stood, here as there."""
+    return frozenset(f"M{code}" for user in users(job) for code in user.get("inert-m", ()))
+
+
+def _told(made: Pipeline, user: Mapping[str, Any]) -> Pipeline:
+    """Return a pipeline with what a user knows."""
+    reading, machine = made.reading, made.machine
+    reading = replace(
+        reading,
+        units=user.get("units", reading.units),
+        tool=user.get("tool", reading.tool),
+        start={**reading.start, **user.get("start", {})},
+    )
+    if machine is not None:
+        inert = machine.inert_m | set(user.get("inert-m", ()))
+        machine = structs.replace(machine, inert_m=inert)
+    return replace(made, reading=reading, machine=machine)
+
+
+def _bare(reading: Reading, control: Mapping[str, str | float]) -> Reading:
     """Return what is known of the machine, without what holds for the language of the source."""
     return Reading(
         reading.start,
+        tool=reading.tool,
         tools=reading.tools,
         work_offsets=reading.work_offsets,
         homes=reading.homes,
@@ -159,12 +203,29 @@ def apart(one: gx.Program, other: gx.Program, but: set[str], near: float) -> str
 
 def _without(path: Toolpath, but: set[str]) -> Toolpath:
     """Return a path without events that are said otherwise."""
-    events = [e for e in path.events if e.what.split(" ")[0].lstrip("/") not in but | ENDS]
+    again = _again(path)
+    events = [
+        e
+        for e in path.events
+        if e not in again and e.what.split(" ")[0].lstrip("/") not in but | ENDS
+    ]
     sides = ("G41", "G42")  # with the tool in the spindle where no D is said: radii are compared
     events = [replace(e, values=()) if e.what in sides else e for e in events]
     if "(...)" in but:
         events = [e for e in events if not e.what.startswith("(")]
     return replace(path, events=tuple(events))
+
+
+def _again(path: Toolpath) -> list[Event]:
+    """Return the T words that choose a tool once more which is chosen: a Fagor says it with M6."""
+    chosen, found = "", list[Event]()
+    for event in path.events:
+        if event.what[0] == "T":
+            found += [event] * (event.what == chosen)
+            chosen = event.what
+        elif event.what == "M6":
+            chosen = ""
+    return found
 
 
 def counts(job: Job) -> bool:
