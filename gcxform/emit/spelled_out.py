@@ -15,6 +15,7 @@ from gcxform.flow.speller import Speller, UnspeakableError
 
 INCHES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*20(?![0-9.])", re.IGNORECASE)
 MILLIMETRES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*21(?![0-9.])", re.IGNORECASE)
+COMMENTS = re.compile(rb"\([^()]*\)|;.*")
 HINT = "let a pass write it in another way, or write for another dialect"
 
 
@@ -55,6 +56,7 @@ def spelled_out(
 
 def inch_first(blocks: Sequence[bytes], inch: bool) -> bool:
     """Whether blocks begin in inches; `inch`: it is so where none says it."""
-    units = (block for block in blocks if INCHES.search(block) or MILLIMETRES.search(block))
+    codes = (COMMENTS.sub(b"", block) for block in blocks)
+    units = (block for block in codes if INCHES.search(block) or MILLIMETRES.search(block))
     first = next(units, None)
     return inch if first is None else INCHES.search(first) is not None

@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: the unit is what a comment says of it",
+        "gcxform/emit/spelled_out.py",
+        'codes = (COMMENTS.sub(b"", block) for block in blocks)',
+        "codes = iter(blocks)",
+        "tests/test_corpus.py::test_case[dialects/across/unit-in-a-comment-is-not-said]",
+    ),
+    Mutation(
         "klartext: a tap is read whichever way the spindle turns before it",
         CYCLES,
         "if self.spindle != sense or again is None:",
