@@ -50,6 +50,13 @@ MUTATIONS = (
         f"{CASE}steps-in-brackets]",
     ),
     Mutation(
+        "fagor: D1 for X and Y is the length of Z too",
+        LINES,
+        'if moves and "Z" not in values and self._beside(names):',
+        "if moves and self._beside(names):",
+        f"{CASE}length-of-the-tool-before-counts]",
+    ),
+    Mutation(
         "fagor: another change of a tool takes the tool of the last T",
         LINES,
         'if "M6" in names and not (self.chosen or "T" in values):',

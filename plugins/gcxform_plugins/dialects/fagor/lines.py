@@ -100,11 +100,23 @@ class Lines(gx.Speller):
         elif "G49" in names:
             self.length = "0"
         moves = self.waits and not values.keys().isdisjoint("XYZABCUVWIJKR")
-        if moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
+        if moves and "Z" not in values and self._beside(names):
+            self.bare = False
+            yield "D1"
+        elif moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
             if self.length not in ("0", self.in_spindle):
                 raise gx.UnspeakableError("the length of another tool than the one in the spindle")
             self.waits, self.bare = False, self.length == "0"
             yield "D0" if self.bare else "D1"
+
+    def _beside(self, names: list[str]) -> bool:
+        """Whether the length in force is another tool's, and no code here says one.
+
+        It waits for Z to move; D1 is said for moves that have no use for it.
+        """
+        codes = {"G43", "G49", "G18", "G19", "G68", "G41", "G42"}
+        other = self.length not in ("0", self.in_spindle) and self.in_spindle != "0"
+        return other and codes.isdisjoint(names)
 
     def _in_machine(self, words: list[tuple[str, str]]) -> Iterator[str]:
         """Yield the lines of a move to a place of the machine; the length in force waits."""
