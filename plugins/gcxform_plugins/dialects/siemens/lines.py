@@ -35,6 +35,9 @@ SAME = frozenset(
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
 TAP = f"G{CODE}"
 MOTIONS = frozenset(("G0", "G1", "G2", "G3", TAP))
+STEPPED = (
+    "steps of Z behind another tool length: a setting decides whether they make up for it (SD42442)"
+)
 CUTS = MOTIONS - {"G0", TAP}
 MOVES_ZERO = frozenset(("G20", "G21", "G43", "G49", "G53", "M6", "G68", "G69", *OFFSETS))
 AXES = frozenset("XYZABC")
@@ -52,6 +55,7 @@ class Lines(gx.Speller):
               M6 the machine file then says which edge is in force, or nothing may move
     height    where Z stands, None where that is not known
     spindle   M3 or M4, as it turns, or nothing;  speed: the S in force
+    shifted   D has been said, and no absolute Z since
     feed      the F in force;  owed: behind a tap it has to be said again
     waits     M6 or SUPA has been, and D has not yet: it is said before Z moves, or by the next code
     """
@@ -64,7 +68,7 @@ class Lines(gx.Speller):
         self.waits = self.steps = False
         self.height: Decimal | None = None
         self.spindle = self.speed = self.motion = self.feed = ""
-        self.owed = False
+        self.owed = self.shifted = False
         self.plane = "G17"
 
     def lose(self) -> None:
@@ -107,6 +111,7 @@ class Lines(gx.Speller):
             return
         else:
             yield from self._tooled(number, names, values)
+            self.shifted &= "Z" not in values or self.steps
         said = [*self._words(words, values)]
         if self.owed and self.motion in CUTS and not values.keys().isdisjoint(AXES | {*"IJKR"}):
             said += [f"F{self.feed}"] if "F" not in values and self.feed else []
@@ -177,6 +182,8 @@ class Lines(gx.Speller):
             self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
         elif "G49" in names:
             self.length = NO_LENGTH
+        if self.shifted and self.steps and "Z" in values:
+            raise gx.UnspeakableError(STEPPED, gx.put_before("absolute"))
         counts = "Z" in values or not {"G41", "G42"}.isdisjoint(names)
         if (self.waits and counts) or not {"G43", "G49"}.isdisjoint(names):
             yield self._edge
@@ -186,7 +193,7 @@ class Lines(gx.Speller):
         """The word for the length in force. Raises UnspeakableError."""
         if self.length not in (NO_LENGTH, self.in_spindle):
             raise gx.UnspeakableError("the length of another tool than the one in the spindle")
-        self.waits = False
+        self.waits, self.shifted = False, True
         return "D0" if self.length == NO_LENGTH else "D1"
 
     # --- words ---
