@@ -119,16 +119,20 @@ def _beside(way: Pipeline, text: bytes, made: Pipeline) -> bytes:
 
 
 def by_hints(made: Pipeline, program: Path | bytes, ways: int) -> tuple[Pipeline, Result]:
-    """Run a pipeline, up to so many times with what its hints offer. Raises GcxformError."""
+    """Run a pipeline, up to so many times with what its hints offer. Raises GcxformError.
+
+    A pass that is offered once more is put before those that have been put before it.
+    """
     added = list[str]()
     while True:
         try:
             return made, made.run(program)
         except gx.GcxformError as error:
-            step = offered(error.diagnostics[0].hint, added, OUTPUT)
+            step = offered(error.diagnostics[0].hint, [*added[-1:]], OUTPUT)
             if step is None or len(added) == ways:
                 raise
-            made = taken(made, step)
+            rest = [each for each in made.passes if each.name != step_name(step).split(" ")[0]]
+            made = taken(replace(made, passes=tuple(rest)), step)
             added.append(step_name(step))
 
 
