@@ -45,6 +45,13 @@ HOLE_TESTS = "tests/test_klartext_holes.py"
 
 MUTATIONS = (
     Mutation(
+        "klartext: a shift of one axis is written, and read as one of three",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        "if {*ends} != {*LINEAR} or ends == self.shift:",
+        "if ends == self.shift:",
+        "tests/test_corpus.py::test_case[dialects/across/local-of-one-axis-for-klartext]",
+    ),
+    Mutation(
         "klartext: the unit is what a comment says of it",
         "gcxform/emit/spelled_out.py",
         'codes = (COMMENTS.sub(b"", block) for block in blocks)',
@@ -102,7 +109,7 @@ MUTATIONS = (
     ),
     Mutation(
         "heidenhain: a tool is fetched and changed at once",
-        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        "plugins/gcxform_plugins/dialects/heidenhain/fetching.py",
         'if not (line.startswith("TOOL DEF ") and after.startswith(called)):',
         "if True:",
         "tests/test_corpus.py::test_case[dialects/across/tools-named-before-m6]",

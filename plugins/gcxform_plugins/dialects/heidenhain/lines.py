@@ -12,6 +12,7 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
+from gcxform_plugins.dialects.heidenhain.fetching import fetched_ahead
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
@@ -55,7 +56,7 @@ class Lines(gx.Speller):
         self.steps = self.over = self.bounded = False
         self.tool = self.in_spindle = self.speed = self.spindle = ""
         self.side = self.waits = " R0"
-        self.turns = Decimal(0)
+        self.turns, self.shift = Decimal(0), dict.fromkeys(LINEAR, Decimal(0))
 
     # --- programs ---
 
@@ -69,7 +70,7 @@ class Lines(gx.Speller):
 
     def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
         """Return lines with cycles for the moves of holes; what they are in inches is not read."""
-        lines = [*_fetched_ahead(lines)]
+        lines = [*fetched_ahead(lines)]
         return lines if self.inch else Drilling(lines).gathered()
 
     def numbered(self, lines: list[str]) -> list[str]:
@@ -354,6 +355,10 @@ class Lines(gx.Speller):
         self._forget("XY")
 
     def _shifted(self, ends: dict[str, Decimal]) -> Iterator[str]:
+        """Yield cycle 7, which is read as a shift of three axes, or as none where they stay."""
+        if {*ends} != {*LINEAR} or ends == self.shift:
+            raise gx.UnspeakableError("G52 of fewer axes, or that changes nothing", UNTURNED)
+        self.shift = ends
         yield "CYCL DEF 7.0 DATUM SHIFT"
         for number, (axis, value) in enumerate(ends.items(), 1):
             yield f"CYCL DEF 7.{number} {axis}{_signed(value)}"
@@ -365,18 +370,6 @@ class Lines(gx.Speller):
 
 
 UNTURNED = gx.put_before("offsets")
-
-
-def _fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
-    """Yield lines without a TOOL DEF behind which TOOL CALL takes the tool at once."""
-    after = ""
-    found = []
-    for line, of in reversed(lines):
-        called = f"TOOL CALL {line.removeprefix('TOOL DEF ')} Z"
-        if not (line.startswith("TOOL DEF ") and after.startswith(called)):
-            found.append((line, of))
-        after = after if line.startswith(";") else line
-    yield from reversed(found)
 
 
 ONE_UNIT = gx.put_before("metric")
