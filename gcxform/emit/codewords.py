@@ -28,7 +28,12 @@ WAY_HOME: Final = (
     "write the point on the way, if there is one, in a block of its own before; G91 G28 Z0 and the "
     "like are said by G53 where the machine file has [home.G28] and the zero of the work offset"
 )
+BY_TAP: Final = (
+    "let the CAM write the tap for this control: whether the spindle turns in step with the feed, "
+    "or a floating chuck makes up for it, each says in its own way, and some by a parameter"
+)
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
+IN_STEP: Final = "G33.1"
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -110,6 +115,8 @@ class CodeWords:
             self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")
         rule = self.source.cycle_rule
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
+        if name in TAPPING or name == IN_STEP:
+            self.draft.refuse(word, what, BY_TAP)
         if name not in EXPANDED or cycle is None or cycle.refused:
             self.draft.refuse(word, what)
         if name in self.target.codes:
