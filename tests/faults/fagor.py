@@ -50,6 +50,27 @@ MUTATIONS = (
         f"{CASE}steps-in-brackets]",
     ),
     Mutation(
+        "fagor: steps behind a tool length are ways",
+        BLOCKS,
+        'self.shifted |= {"Z"} if length else set()',
+        "self.shifted |= set()",
+        f"{CASE}steps-behind-a-length]",
+    ),
+    Mutation(
+        "fagor: steps behind another work offset are ways",
+        BLOCKS,
+        "self.shifted |= tables.AXES if self.work and work != self.work else set()",
+        "self.shifted |= set()",
+        f"{CASE}steps-behind-an-offset]",
+    ),
+    Mutation(
+        "fagor: plain lines behind another work offset are not looked at",
+        BLOCKS,
+        "self.plainly = not (self.bars or self.machine or self.shifted)",
+        "self.plainly = not (self.bars or self.machine)",
+        f"{CASE}steps-behind-an-offset]",
+    ),
+    Mutation(
         "fagor: D1 for X and Y is the length of Z too",
         LINES,
         'if moves and "Z" not in values and self._beside(names):',
@@ -206,8 +227,8 @@ MUTATIONS = (
     Mutation(
         "fagor: behind a place of the machine no length is in force",
         LINES,
-        'self.bare, self.waits = True, self.length != "0"',
-        "self.bare, self.waits = True, False",
+        'self.bare, self.waits, self.shifted = True, self.length != "0", True',
+        "self.bare, self.waits, self.shifted = True, False, True",
         f"{SAID}::test_places_of_the_machine_are_said",
     ),
     Mutation(
@@ -444,7 +465,7 @@ MUTATIONS = (
     Mutation(
         "fagor: plain blocks are not looked at while nothing may move",
         BLOCKS,
-        "        self.plainly = not self.bars and not self.machine\n",
+        "        self.plainly = not (self.bars or self.machine or self.shifted)\n",
         "",
         f"{CASE}g53]",
     ),

@@ -22,6 +22,8 @@ IN_MACHINE = frozenset(("", "G0", "G1", "G90", "M3", "M4", "M5", "M7", "M8", "M9
 """Codes that are read in lines to places of the machine."""
 WHOLE = re.compile(r"[0-9]+\Z")
 INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
+SHIFTS = "another work offset or tool length: whether it makes up for the difference is not certain"
+TOLD = "tell the axis absolute before"
 
 
 class Blocks(gx.Translator):
@@ -48,6 +50,9 @@ class Blocks(gx.Translator):
         self.tool = self.edge = self.in_spindle = ""
         self.changing = self.across = self.long = False
         self.bare = self.machine = self.comp = False
+        self.work, self.shifted = "", set[str]()
+        """The work offset in force, and the axes that have not been told since where they count
+        from has changed."""
 
     def plain(self, items: Sequence[gx.Item]) -> bool:
         """Whether a block has plain codes and words only, its number before them."""
@@ -70,7 +75,7 @@ class Blocks(gx.Translator):
             blocks = [*self._statement(items)]
         else:
             blocks = [*self._block(items)]
-        self.plainly = not self.bars and not self.machine
+        self.plainly = not (self.bars or self.machine or self.shifted)
         self.places.note(items)
         return [f"{number}{blocks[0]}", *blocks[1:]] if blocks else []
 
@@ -124,6 +129,7 @@ class Blocks(gx.Translator):
         self._turned(codes, length)
         if moved:
             self._move(moved[0])
+        self._shift(items, length)
         words = [word for item in items for word in self._said(item)]
         words, after = self._relative(items, words)
         if "G6" in codes:
@@ -187,6 +193,22 @@ class Blocks(gx.Translator):
         if not self.long or self.following or any(other.name in ("T", "D") for other in items):
             what = "compensation needs D1 of the tool in the spindle, said before, and no #RTCP"
             self.refuse(what, item, "write T, M6 and D1 before")
+
+    def _shift(self, items: Sequence[gx.Item], length: str) -> None:
+        """Take another zero, or another length. Raises InputError for steps behind it.
+
+        On the same control they are the same steps.
+        """
+        if self.reading.stays:
+            return
+        work = next((w for item in items for w in self._said(item) if w in tables.WORK), self.work)
+        self.shifted |= tables.AXES if self.work and work != self.work else set()
+        self.work = work
+        for item in items if self.shifted else ():
+            if item.name in self.shifted and (item.kind == "incremental" or self.incremental):
+                self.refuse(f"a step of {item.name} behind {SHIFTS}", item, TOLD)
+            self.shifted.discard(item.name)
+        self.shifted |= {"Z"} if length else set()
 
     def _in_machine(self, items: Sequence[gx.Item]) -> str:
         """Return the block of a move in the coordinates of the machine."""

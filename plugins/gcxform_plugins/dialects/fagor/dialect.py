@@ -31,6 +31,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | `X10I 5` | may be either: refused |
 | `X10I Y5` | X counts from the last coordinates in the program, which must be there; else refused |
 | `X=10` | the same as X10; names of more than a letter (`X1=10`) are refused |
+| steps behind D, or another work offset | refused until their axis has been told | |
 | arc centre | from the start; with G6 from the work zero: both words, for one block [doc] |
 | arc centre, a word less | is 0 [doc] |
 | full circle | end repeated, or left out; with R refused |

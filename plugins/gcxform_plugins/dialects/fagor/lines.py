@@ -27,6 +27,7 @@ CORNERS = frozenset(("G61", "G64"))
 SEMI_ROUNDED = "G50"
 LONGEST = 14  # characters of the name of a program [Q 45]
 ENDS = ("M2", "M30")
+STEPPED = "steps of Z behind another tool length: whether they make up for it is not certain"
 
 
 class Lines(gx.Speller):
@@ -35,7 +36,7 @@ class Lines(gx.Speller):
     tool    that of the last T, and `in_spindle`;  chosen: T has been since M6
     length  that of which tool is in force, "0" for none
     waits   M6 or a place of the machine has been, and D has not yet: it is said before a move
-    bare    D0 was said last
+    bare    D0 was said last;  shifted: D was, and no absolute Z since;  steps: G91 is in force
     over    the program has ended
     """
 
@@ -46,7 +47,7 @@ class Lines(gx.Speller):
         bare = f"P{bare}" if bare.startswith("L") else bare
         super().__init__(bare[:LONGEST], inch)
         self.tool = self.in_spindle = self.length = "0"
-        self.waits = self.over = self.bare = self.chosen = False
+        self.waits = self.over = self.bare = self.chosen = self.steps = self.shifted = False
 
     def opening(self) -> list[str]:
         """Return the first line."""
@@ -71,7 +72,11 @@ class Lines(gx.Speller):
         if "G53" in names:
             yield from self._in_machine(words)
             return
+        self.steps = "G91" in names or (self.steps and "G90" not in names)
         yield from self._tooled(names, values)
+        if self.shifted and self.steps and "Z" in values:
+            raise gx.UnspeakableError(STEPPED, gx.put_before("absolute"))
+        self.shifted &= "Z" not in values
         if "G68" in names or "G69" in names:
             raise gx.UnspeakableError("a turn is not written")
         if "G4" in names:
@@ -101,12 +106,12 @@ class Lines(gx.Speller):
             self.length = "0"
         moves = self.waits and not values.keys().isdisjoint("XYZABCUVWIJKR")
         if moves and "Z" not in values and self._beside(names):
-            self.bare = False
+            self.bare, self.shifted = False, True
             yield "D1"
         elif moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
             if self.length not in ("0", self.in_spindle):
                 raise gx.UnspeakableError("the length of another tool than the one in the spindle")
-            self.waits, self.bare = False, self.length == "0"
+            self.waits, self.bare, self.shifted = False, self.length == "0", True
             yield "D0" if self.bare else "D1"
 
     def _beside(self, names: list[str]) -> bool:
@@ -122,7 +127,7 @@ class Lines(gx.Speller):
         """Yield the lines of a move to a place of the machine; the length in force waits."""
         if not self.bare:
             yield "D0"
-        self.bare, self.waits = True, self.length != "0"
+        self.bare, self.waits, self.shifted = True, self.length != "0", True
         yield "#MCS ON"
         yield " ".join(self._words([each for each in words if each != ("G", "53")], False))
         yield "#MCS OFF"
