@@ -130,6 +130,13 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
+        "volumetric: an axis that counts from elsewhere counts as standing nowhere",
+        "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
+        "known = np.isfinite(path.end[:, elsewhere]).any(axis=1)",
+        "known = np.isnan(path.end[:, elsewhere]).all(axis=1)",
+        f"{CORPUS}[bad/gx314-length-after-home]",
+    ),
+    Mutation(
         "volumetric: curved pieces are not divided",
         "plugins/gcxform_plugins/passes/volumetric/forward/lines.py",
         "np.ceil(np.sqrt(bend / between))",

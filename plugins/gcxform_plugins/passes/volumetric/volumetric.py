@@ -163,12 +163,17 @@ class Volumetric(VolumetricOptions, gx.Pass):
             raise path.refuse("GX314", np.flatnonzero(turned)[:1], message, hint)
 
     def _check_frames(self, path: gx.Toolpath, message: str, tools: bool) -> None:
-        """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter."""
+        """Refuse rows whose X, Y, Z count from elsewhere; `tools`: tool lengths matter.
+
+        An axis that stands nowhere known counts from nothing: such a rapid is left to the machine.
+        """
         for number in np.flatnonzero(np.bincount(path.frame)).tolist():
             origins = path.frames[number].origin[:3]
             named = [name if tools else name.split(" + ")[0] for name in origins]
-            if any(name != path.first for name in named):
-                rows = np.flatnonzero(path.frame == number)[:1]
+            elsewhere = [k for k, name in enumerate(named) if name != path.first]
+            known = np.isfinite(path.end[:, elsewhere]).any(axis=1)
+            rows = np.flatnonzero((path.frame == number) & known)[:1]
+            if len(rows):
                 raise path.refuse("GX314", rows, message, _ways_to_know(path.first, named, tools))
 
 
@@ -177,6 +182,8 @@ def _ways_to_know(first: str, named: list[str], tools: bool) -> str:
     known = " and ".join(dict.fromkeys(name for name in named if name != first))
     if not tools:
         return f"not known: {known}; a machine file says it, with part-origin left out"
+    if ", after " in known:
+        return f"not known: {known}; call the length again behind it, with G43, before Z is named"
     said = gx.ways_to_offsets(first, *(name.split(" + ")[0] for name in named))
     if any(" + " in name for name in named):
         said += ", length = ... in [tool.*]"
