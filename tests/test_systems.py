@@ -277,6 +277,21 @@ def test_what_powershell_has_written_is_named(
         assert done.stdout == ""
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_utf16_without_its_mark_is_named(
+    encoding: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Zeros before the program alone are the leader of a paper tape."""
+    folder = workplace(tmp_path, monkeypatch)
+    (folder / "wide.nc").write_bytes(PART.decode().encode(encoding))
+    done = call("run", "-x", "absolute", "-f", "linuxcnc", "wide.nc")
+    assert (done.exit_code, "it is UTF-16" in done.stderr) == (5, True)
+    for count in (7, 63):
+        (folder / "tape.nc").write_bytes(bytes(count) + PART)
+        done = call("run", "-x", "absolute", "-f", "linuxcnc", "tape.nc")
+        assert "UTF-16" not in done.stderr
+
+
 def test_files_of_notepad_are_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a byte order mark, and lines that end in CR LF."""
     folder = workplace(tmp_path, monkeypatch)

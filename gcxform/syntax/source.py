@@ -21,7 +21,7 @@ from typing import IO, BinaryIO, cast
 from gcxform.config import arguments
 from gcxform.diagnostics import FileError, InputError, Location
 from gcxform.syntax.undecided import DECIDED, Undecided
-from gcxform.system.inputs import UTF16, UTF16_MARKS, is_changed
+from gcxform.system.inputs import UTF16, is_changed, is_utf16
 from gcxform.system.limits import how_to_raise, limits
 from gcxform.system.stages import stage
 
@@ -98,7 +98,7 @@ class Source:
             if before is not None and is_changed(before, os.fstat(stream.fileno()), size):
                 raise FileError.one("GX904", f"{name} changed while it was read")
             copy.seek(0)
-            if copy.read(2) in UTF16_MARKS:
+            if is_utf16(copy.read(64)):
                 raise FileError.one("GX901", f"{name} is not a program of bytes", hint=UTF16)
             copy.seek(0)
             stack.pop_all()  # from here on the source has it

@@ -28,9 +28,23 @@ if TYPE_CHECKING:
 STDIN = "/dev/stdin"  # a name for it, also where there is no such file
 CHUNK = 1 << 20
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
-UTF16 = "it is UTF-16, which > of PowerShell writes: -o FILE in the place of > FILE keeps bytes"
+UTF16 = (
+    "it is UTF-16, which > of PowerShell writes: -o FILE in the place of > FILE keeps bytes, "
+    "and an editor saves it as UTF-8"
+)
 CHANGED = "it changed while it was read"
 ALLOW = "copy it there, or say --allow-outside"
+
+
+def is_utf16(head: bytes) -> bool:
+    """Whether a text begins as UTF-16 does: with its mark, or with zeros in just each second byte.
+
+    Zeros by themselves are the leader of a paper tape.
+    """
+    pairs = head[: len(head) // 2 * 2]
+    high, low = pairs[1::2], pairs[::2]
+    zeros = (all(low) and not any(high)) or (all(high) and not any(low))
+    return head[:2] in UTF16_MARKS or (len(pairs) > 4 and zeros)
 
 
 @dataclass

@@ -9,6 +9,13 @@ PLACES = "gcxform/system/places.py"
 
 MUTATIONS = (
     Mutation(
+        "UTF-16: the zeros of a paper tape count",
+        "gcxform/system/inputs.py",
+        "zeros = (all(low) and not any(high)) or (all(high) and not any(low))",
+        "zeros = not any(high) or not any(low)",
+        "tests/test_systems.py::test_utf16_without_its_mark_is_named",
+    ),
+    Mutation(
         "systems: a result goes to a device",
         PLACES,
         '    if _DEVICES.fullmatch(name.partition(".")[0]):\n',
@@ -53,7 +60,7 @@ MUTATIONS = (
     Mutation(
         "systems: UTF-16 is read as letters",
         "gcxform/syntax/source.py",
-        "            if copy.read(2) in UTF16_MARKS:\n",
+        "            if is_utf16(copy.read(64)):\n",
         "            if copy.read(2) in ():\n",
         TESTS,
     ),
