@@ -6,6 +6,7 @@ iso (...)`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache, lru_cache
 from typing import Any
@@ -27,6 +28,7 @@ from gcxform.syntax.tree import (
 from gcxform.system.limits import how_to_raise, limits
 
 LATELY = 8192  # blocks whose trees are kept
+LONE_LETTER = re.compile(r"(?<![A-Za-z])[A-Za-z][ \t]*\Z")  # an address without its number
 ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset(
     {
@@ -99,6 +101,9 @@ def refusal_of(error: UnexpectedInput, text: str) -> tuple[int, str]:
         return error.at + 1, f"{message}; {how_to_raise('nesting')}"
     if at is None or at < 0 or at >= len(text):
         return len(text) + 1, "the block ends in the middle of a word"
+    lone = LONE_LETTER.search(text, 0, at) if text[at] in ";(" else None
+    if lone is not None:
+        return lone.start() + 1, f"{lone[0].strip()} has no number"
     if text[at] == "(":
         return at + 1, "this comment is not closed, or has a bracket inside"
     return at + 1, f"{text[at]!r} does not fit here"

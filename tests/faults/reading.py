@@ -9,6 +9,13 @@ OF_TREES = "tests/test_tree_shapes.py"
 
 MUTATIONS = (
     Mutation(
+        "grammar: a letter alone is passed over for the sign behind it",
+        "gcxform/syntax/grammar.py",
+        'if text[at] in ";(" else None',
+        'if text[at] in "(" else None',
+        f"{CORPUS}[bad/gx101-letter-alone]",
+    ),
+    Mutation(
         "trees: a number with a point is one without",
         TREES,
         '    return "#" if number.isdigit() else "," if number[0] == "." else "."\n',

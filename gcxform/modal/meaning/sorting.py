@@ -38,6 +38,7 @@ from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statement, Word
 
 BEHIND_AN_END = "; ends a block: what is behind it is another line, and a comment stands in ( )"
+TO_THE_CONSOLE = "$ begins a command for the console of a control, and no block: send it before"
 CENTRE = "IJK"
 COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""
@@ -64,6 +65,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
         column, message = shape.block.error
         message = f"this is not {dialect.name} G-code: {message}"
         hint = BEHIND_AN_END if "';'" in message else ""
+        hint = TO_THE_CONSOLE if "'$'" in message and column == 1 else hint
         yield Refusal("GX101", column - 1, 1, message, hint)
     yield from lathe_signs(shape, dialect)
     yield from _items(shape, dialect, meaning)
@@ -201,7 +203,8 @@ def _g_effects(
         if code.effect is Effect.DWELL:
             meaning.dwell = True
             if not taken:
-                yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time")
+                hint = f"write it with {' or '.join(dialect.point_rule.dwell)}"
+                yield Refusal("GX204", owners[group].start, 2, f"{name} needs a time", hint)
             elif taken[1:]:
                 yield Refusal("GX203", owners[group].start, 2, f"{name} has two times")
             meaning.events.append(EventShape(50, "DWELL", taken))

@@ -25,6 +25,7 @@ OTHERWISE = {
     "PATHCTRL VECTOR": "the tool axis then stays in a plane; write PATHCTRL AXIS",
     "REFPNT": "the control then follows another point of the tool",
 }
+LBL_0 = "write LBL 0 where it ends, behind what it does"
 LONGEST_TOOL = 9  # digits
 
 
@@ -136,7 +137,7 @@ class Klartext(Cycles):
             self.go_back()
             return []
         if self.calls:
-            raise self.refusal("GX223", "a subprogram does not end with LBL 0", item)
+            raise self.refusal("GX223", "a subprogram does not end with LBL 0", item, LBL_0)
         self.over = True
         return ["M2"]
 
