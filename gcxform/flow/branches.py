@@ -25,7 +25,7 @@ from gcxform.flow.forks import HINT, Arrival, Forks
 from gcxform.flow.rerun import Again
 from gcxform.flow.residual import Edit
 from gcxform.flow.run_state import UNKNOWN
-from gcxform.flow.skipped_stretches import is_still
+from gcxform.flow.skipped_stretches import is_still, said_of_codes
 from gcxform.modal.expressions.value import Evaluator, settable
 from gcxform.modal.meaning.printed import prints_values
 from gcxform.syntax.tree import Block, Comment, Expression, Statement, Word
@@ -192,9 +192,11 @@ class Branches(Forks):
     ) -> dict[Key, float]:
         run = self.run
         flow = [i for i in block.items if isinstance(i, Statement) and i.kind != "assignment"]
-        if not flow and not is_still(run.listing.meaning(run.line), block):
+        if not flow and not self._stays_still(run.line):
             message = "this may be repeated: only the machine knows how often"
-            raise run.refusal("GX220", message, HINT)
+            said = said_of_codes(run.listing.meaning(run.line))
+            hint = f"if it moves nothing: {said}" if said else HINT
+            raise run.refusal("GX220", message, hint)
         pieces: list[Edit] = []
         known = Evaluator(run.conditions, run.parameters)
         for item in block.items:
@@ -265,7 +267,7 @@ class Branches(Forks):
             run.put(run.listing.raw(at, at + 1), np.array([at]))
             if run.is_over(block) and not (at + 1 < run.listing.own and self._only_ends(at + 1)):
                 return  # an end behind an alarm stays with it
-            if meaning.refusal is not None or not is_still(meaning, block):
+            if meaning.refusal is not None or not self._stays_still(at):
                 break
             at += 1
             if at >= run.listing.own:
@@ -302,10 +304,16 @@ class Branches(Forks):
 
     def _is_still(self, first: int, last: int) -> bool:
         """Whether lines move nothing and change no mode."""
-        lines = range(first, last + 1)
-        blocks = [(self.run.listing.meaning(n), self.run.listing.block(n)) for n in lines]
-        flows = [any(isinstance(i, Statement) for i in block.items) for _, block in blocks]
-        return all(f or is_still(*each) for f, each in zip(flows, blocks, strict=True))
+        return all(
+            any(isinstance(item, Statement) for item in self.run.listing.block(line).items)
+            or self._stays_still(line)
+            for line in range(first, last + 1)
+        )
+
+    def _stays_still(self, line: int) -> bool:
+        """Whether a line moves nothing and changes no mode."""
+        listing = self.run.listing
+        return is_still(listing.meaning(line), listing.block(line), self.run.reading.inert_m)
 
 
 def number_of(text: bytes) -> int | None:

@@ -7,6 +7,9 @@ the machine's own, unless its file says that they are inert.
 
 from __future__ import annotations
 
+from collections.abc import Set
+from dataclasses import replace
+
 import numpy as np
 
 from gcxform.flow.run_state import RunState
@@ -35,8 +38,13 @@ class Effect:
         return bool(set(self.letters) - {"F"})
 
 
-def is_still(meaning: Meaning, block: Block) -> bool:
-    """Whether a block neither moves anything nor changes a mode: it waits, counts or tells."""
+def is_still(meaning: Meaning, block: Block, inert_m: Set[int]) -> bool:
+    """Whether a block neither moves anything nor changes a mode: it waits, counts or tells.
+
+    `inert_m` are M codes of the machine's own of which its file says that they do not, either.
+    """
+    if meaning.lost_by and meaning.lost_by <= inert_m:
+        meaning = replace(meaning, loses_position=False, runs_macro=False)
     return block.error is None and meaning.is_still and not meaning.deleted
 
 
@@ -74,11 +82,16 @@ def _not_carried(meaning: Meaning, inert: bool) -> str:
     return "an end" if meaning.ends else ""
 
 
-def _way(meaning: Meaning) -> str:
+def said_of_codes(meaning: Meaning) -> str:
     """Return what the machine file can say of the M codes of a block."""
     numbers = ", ".join(map(str, sorted(meaning.lost_by - {-1})))
     said = f"inert-m = [{numbers}] in [control] of the machine file"
-    return f"if it runs none: {said}, beside those that it has" if numbers else ""
+    return f"{said}, beside those that it has" if numbers else ""
+
+
+def _way(meaning: Meaning) -> str:
+    said = said_of_codes(meaning)
+    return f"if it runs none: {said}" if said else ""
 
 
 @dataclass(frozen=True, slots=True)

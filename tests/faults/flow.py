@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from faults.mutation import FACTS, Mutation
+from faults.mutation import CORPUS, FACTS, Mutation
 
 CASES = "tests/test_corpus.py::test_case"
 AGREES = "tests/properties/test_flow.py"
@@ -619,6 +619,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/call-by-a-value]",
     ),
     Mutation(
+        "waiting loops: any M code counts as inert",
+        "gcxform/flow/skipped_stretches.py",
+        "if meaning.lost_by and meaning.lost_by <= inert_m:",
+        "if meaning.lost_by:",
+        f"{CORPUS}[flow/other-m-in-wait]",
+    ),
+    Mutation(
         "branches: what a jump may leave out is not lost",
         "gcxform/flow/forks.py",
         "self.note(here, since, self.effect(since))",
@@ -642,7 +649,7 @@ MUTATIONS = (
     Mutation(
         "branches: loops that the machine ends may move",
         "gcxform/flow/branches.py",
-        "if not flow and not is_still(run.listing.meaning(run.line), block):",
+        "if not flow and not self._stays_still(run.line):",
         "if False:",
         CASES,
     ),
@@ -656,7 +663,7 @@ MUTATIONS = (
     Mutation(
         "branches: what stands behind the end may move",
         "gcxform/flow/branches.py",
-        "if meaning.refusal is not None or not is_still(meaning, block):",
+        "if meaning.refusal is not None or not self._stays_still(at):",
         "if False:",
         CASES,
     ),
