@@ -80,6 +80,20 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/across/tap-between-holes-for-klartext]",
     ),
     Mutation(
+        "klartext: any preset counts as the one there was",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        "another = number != self.counts_from and (self.moved or self.counts_from is not None)",
+        "another = number != self.counts_from and bool(self.moved)",
+        f"{CORPUS}[dialects/heidenhain-preset]",
+    ),
+    Mutation(
+        "klartext: a preset that is named late counts from the start",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        "another = number != self.counts_from and (self.moved or self.counts_from is not None)",
+        "another = number != self.counts_from and self.counts_from is not None",
+        f"{CORPUS}[dialects/heidenhain-preset-late]",
+    ),
+    Mutation(
         "klartext: what stands beside the size of a corner is passed over",
         CONTOURS,
         "if len(sizes) > 1 or others != sizes:",

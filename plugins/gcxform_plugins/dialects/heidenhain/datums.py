@@ -26,7 +26,7 @@ ROTATION = re.compile(rf"(I?)ROT\s*{NUMBER}\s*")
 TURNS = re.compile(r"TRANS\s+(ROTATION|MIRROR)\s+(?:(RESET)|AXIS\s+(.*?)|(I?ROT.*?))\s*")
 SCALE = re.compile(rf"SCL\s*({VALUE})")
 UNTURNED = "end the rotation or the mirror image before"
-LEAVE = "if all of the program counts from it, leave this block out: G54 stands for it then"
+PRESET = "preset {} of cycle 247 is where the program counts from, and G54 stands for it"
 
 
 class Datums(Parameters):
@@ -198,11 +198,16 @@ class Datums(Parameters):
         return self._shifted(item, given)
 
     def preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
-        """Cycle 247: the preset; the one set by hand, if all of the program counts from it."""
-        if told.get(339) != 0 or len(told) > 1:
-            self.refuse("a preset of the table: only 0, which is set by hand, is read", item, LEAVE)
+        """Cycle 247: the preset, if all of the program counts from it; once more it is the same."""
+        number = told.get(339)
+        if number is None or len(told) > 1:
+            self.refuse("a preset without its number", item)
+        another = number != self.counts_from and (self.moved or self.counts_from is not None)
         turned = self.turn != 0 or self.mirrored != ""
-        if self.moved or turned or any(float(n) for n in self.shift.values()):
+        if another or turned or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
+        self.counts_from = number
+        if number:
+            self.assumed[PRESET.format(exact(number))] = None
         self.lose()
         return []

@@ -60,7 +60,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |
 | PLANE RESET STAY | cancels what is refused here | [K] |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
-| cycle 247 | preset 0, before the first move; others are refused | [K] |
+| cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |

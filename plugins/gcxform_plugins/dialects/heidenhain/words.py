@@ -56,6 +56,7 @@ class Words(gx.Translator):
     last      code, start and centre of the element that ends where the axes stand; None where that
               has no direction in X and Y
     moved     axes that have moved to a place of the workpiece since the program began
+    counts_from  the preset that cycle 247 has named, None before
     side      G41 or G42 where RL or RR is in force
     spindle   M3 or M4, as it turns; nothing where it stands, or that is not known
     plane     G17, G18 or G19, as blocks have it
@@ -79,6 +80,7 @@ class Words(gx.Translator):
         self.last: Element | None = None
         self.polar_at: dict[int, tuple[str, str] | None] = {}
         self.moved: set[str] = set()
+        self.counts_from: Decimal | None = None
         self.motion, self.plane = "", "G17"
         self.feed = ""
         self.tool_feed = ""
