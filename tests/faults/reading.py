@@ -9,6 +9,13 @@ OF_TREES = "tests/test_tree_shapes.py"
 
 MUTATIONS = (
     Mutation(
+        "lathes: U and W are taken for steps beside Y",
+        "gcxform/modal/meaning/lathe.py",
+        "words.keys().isdisjoint(OF_MILLS)",
+        "True",
+        f"{CORPUS}[bad/u-and-w-of-a-mill]",
+    ),
+    Mutation(
         "grammar: a letter alone is passed over for the sign behind it",
         "gcxform/syntax/grammar.py",
         'if text[at] in ";(" else None',
@@ -216,8 +223,8 @@ MUTATIONS = (
     Mutation(
         "reading: a parallel axis is a step of a lathe",
         "gcxform/modal/meaning/lathe.py",
-        "words.keys() - taken - {*dialect.axes}",
-        "words.keys() - taken",
+        "sorted(steps - {*dialect.axes})",
+        "sorted(steps)",
         "tests/test_corpus.py::test_case[dialects/fanuc/parallel-axes]",
     ),
     Mutation(

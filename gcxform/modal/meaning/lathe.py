@@ -19,6 +19,8 @@ TURNING = frozenset(f"G{number}" for number in range(70, 77))
 CONTOURS = frozenset(("G70", "G71", "G72", "G75"))
 """Those of them that no mill has, or none that takes P and Q."""
 STEPS = frozenset("UW")
+OF_MILLS = frozenset("YV")
+"""What stands beside U and W where they are axes of their own."""
 LATHE = "GX234"
 
 
@@ -33,8 +35,11 @@ def lathe_signs(shape: Shape, dialect: type[Dialect]) -> Iterator[Refusal]:
         if what:
             yield _refusal(word, what)
     taken = {letter for word in plain for letter in _taken(code_of(word), dialect)}
-    for address in sorted(STEPS & words.keys() - taken - {*dialect.axes}):
+    steps = STEPS & words.keys() - taken
+    for address in sorted(steps - {*dialect.axes}):
         yield _refusal(words[address], f"{address}, a step of a lathe's axis")
+    if steps == STEPS <= {*dialect.axes} and words.keys().isdisjoint(OF_MILLS):
+        yield _refusal(words["U"], "U and W, the steps of a lathe's axes, in a block without Y")
 
 
 def _sign(code: str, words: dict[str, Word], dialect: type[Dialect]) -> str:
