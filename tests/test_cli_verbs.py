@@ -227,6 +227,17 @@ def test_growth_without_a_limit_and_of_nothing(here: Path) -> None:
     empty = call("run", "-x", "absolute", "-f", "linuxcnc", "-o", "out.nc", "-", stdin=b"")
     assert empty.exit_code == 0
     assert "0 -> 0 blocks   absolute" in empty.stderr
+    assert "the file is empty: it holds no block" in empty.stderr
+
+
+def test_a_program_in_which_nothing_moves_is_said_to_be_one(here: Path) -> None:
+    for text, nothing in ((b"(T1)\nM2\n", True), (b"G21 G90 G0 X1\nM2\n", False)):
+        done = call("run", "-x", "absolute", "-f", "linuxcnc", "-o", "out.nc", "-", stdin=text)
+        assert done.exit_code == 0
+        assert ("no block of it moves an axis" in done.stderr) is nothing
+    (here / "empty.nc").write_bytes(b"")
+    found = call("check", "-f", "linuxcnc", "empty.nc")
+    assert "empty.nc: the file is empty, " in found.stdout
 
 
 # --- info ---

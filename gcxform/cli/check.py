@@ -175,7 +175,8 @@ def _check(pipeline: Pipeline, source: Source, what: Asked) -> int:
     values = {"file": source.name, "lines": lines, "assumed": assumed}
     values["missing"] = [".".join(each) for each in open_.asked()]
     head = [*(f"assumed   {each}" for each in assumed)]
-    head.append(f"{source.name}: {lines} lines, {_count(found)}")
+    counted = f"{lines} lines" if lines else "the file is empty"
+    head.append(f"{source.name}: {counted}, {_count(found)}")
     answer(values, [*head, *_other_dialect(found, what, pipeline), *_asked(open_, what, pipeline)])
     return 1 if found else 0
 

@@ -99,7 +99,15 @@ def summary(pipeline: Pipeline, done: Done) -> str:
     steps = " | ".join(step.name for step in pipeline.passes) or "no passes"
     head = f"{shown(found.source['name'])}: {pipeline.source.name} -> {pipeline.target.name}"
     first = f"{head}   {counts}   {steps}   {done.seconds:.2f} s"
-    return "\n  ".join([first, *_states(found), *_measured(found), _proof(found)])
+    return "\n  ".join([first, *_nothing(found), *_states(found), *_measured(found), _proof(found)])
+
+
+def _nothing(found: Certificate) -> Iterator[str]:
+    """Say that nothing was there to be transformed: a file may have been lost on the way."""
+    if not found.growth["blocks_in"]:
+        yield "the file is empty: it holds no block"
+    elif found.verified and found.checked.get("moves") == 0:
+        yield "no block of it moves an axis"
 
 
 def _states(found: Certificate) -> Iterator[str]:

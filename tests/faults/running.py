@@ -11,6 +11,13 @@ def _worker(name: str, old: str, new: str) -> Mutation:
 
 MUTATIONS = (
     Mutation(
+        "run: nothing is said of a program in which nothing moves",
+        "gcxform/cli/run.py",
+        'found.checked.get("moves") == 0',
+        'found.checked.get("moves") == -1',
+        "tests/test_cli_verbs.py::test_a_program_in_which_nothing_moves_is_said_to_be_one",
+    ),
+    Mutation(
         "run: the last window is not proved",
         "gcxform/pipeline/run.py",
         "            while proof.busy and not",
