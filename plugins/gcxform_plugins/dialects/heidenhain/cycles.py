@@ -215,8 +215,9 @@ class Cycles(Datums):
     def _hole(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
         """Return the blocks of a hole in one stroke: out in rapid, or at Q208."""
         hole, name = HOLES[self.cycle], f"cycle {self.cycle}"
-        if not told.keys() >= {*hole.needs}:
-            raise self.refusal("GX215", f"{name} lacks a parameter", item)
+        if lacks := sorted({*hole.needs} - told.keys()):
+            message = f"{name} lacks Q{lacks[0]}, or a number for it"
+            raise self.refusal("GX215", message, item, f"define it with Q{lacks[0]} = a number")
         for number, why in hole.zero.items():
             if told.get(number):
                 raise self.refusal("GX215", f"{name} with Q{number}, {why}", item, ALONE)
