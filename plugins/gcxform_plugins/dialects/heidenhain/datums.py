@@ -26,6 +26,7 @@ ROTATION = re.compile(rf"(I?)ROT\s*{NUMBER}\s*")
 TURNS = re.compile(r"TRANS\s+(ROTATION|MIRROR)\s+(?:(RESET)|AXIS\s+(.*?)|(I?ROT.*?))\s*")
 SCALE = re.compile(rf"SCL\s*({VALUE})")
 UNTURNED = "end the rotation or the mirror image before"
+PLACE = "leave this block out, if the place of G54 in the machine file is that of this preset"
 PRESET = "preset {} of cycle 247 is where the program counts from, and G54 stands for it"
 
 
@@ -206,6 +207,8 @@ class Datums(Parameters):
         turned = self.turn != 0 or self.mirrored != ""
         if another or turned or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
+        if number and not self.reading.stays and "G54" in self.reading.work_offsets:
+            self.refuse(f"{exact(number)} of the presets, each at its own place", item, PLACE)
         self.counts_from = number
         if number:
             self.assumed[PRESET.format(exact(number))] = None
