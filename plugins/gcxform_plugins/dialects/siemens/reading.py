@@ -30,7 +30,7 @@ REASONS = {
     "291": "G291 switches to another language",
     "500": "G500 leaves basic frames in force, which only the control knows",
 }
-IN_INCHES = "write G700 in its place if feeds are in inches too"
+HINTS = {"70": ("write G700 in its place if feeds are in inches too",)}
 ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
 WHY = {
     "CT": "CT is an arc whose centre follows from the move before",
@@ -250,8 +250,7 @@ class Statements(gx.Translator):
         elif code == "153":
             line.machine = item
         else:
-            why = REASONS.get(code, f"G{code} is not read")
-            self.refuse(why, item, *([IN_INCHES] if code == "70" else []))
+            self.refuse(REASONS.get(code, f"G{code} is not read"), item, *HINTS.get(code, ()))
 
     def _units(self, line: Line, item: gx.Item, code: str) -> None:
         if code == "71" and self.reading.units != "mm":
