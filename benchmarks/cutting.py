@@ -103,7 +103,6 @@ def run(case: Case, folder: Path, options: str, before: str = "") -> tuple[int, 
 format = 1
 [input]
 dialect = "{case.dialect}"
-units = "mm"
 start = {{ X = 0.0, Y = 0.0, Z = 0.0 }}
 {machine}
 [budget]

@@ -370,6 +370,18 @@ def test_a_move_from_a_lost_position_is_not_cut(dialect: str, between: str) -> N
     assert result.text.splitlines()[-1] == b"G1 X20. Y10. Z0."
 
 
+def test_a_unit_that_a_setting_decides_is_told_where_moves_are_cut(here: Path) -> None:
+    (here / "part.nc").write_text("O0001\nG90 G0 X1. Y1. Z1.\nG1 X2. F10.\nM30\n")
+    cut = "run", "-f", "haas", "-x", "segment max-length=0.5 arcs=split", "part.nc"
+    warned = call(*cut)
+    assert warned.exit_code == 0
+    assert "part.nc:2:1: warning[GX235]" in warned.stderr
+    assert "taken to be in mm" in warned.stderr
+    for others in (("--units", "mm"), ("--units", "in")):
+        assert "GX235" not in call(*cut, *others).stderr
+    assert "GX235" not in call("run", "-f", "haas", "-x", "absolute", "part.nc").stderr
+
+
 @pytest.mark.parametrize("block", ["/M8", "/X2"])
 def test_a_block_that_is_skipped_stays_as_it_is(here: Path, block: str) -> None:
     (here / "part.nc").write_text(f"G1 F100 X0\nG91 X1\n{block}\nM2\n")

@@ -148,8 +148,7 @@ def compensated(tmp_path, passes="", output="", budget=""):
     """Return moves, deviation before rounding (mm) and after it (mm) of the LDDM example."""
     example = ROOT / "examples" / "lddm"
     (tmp_path / "p.toml").write_text(
-        f'format = 1\n[input]\ndialect = "fanuc"\nunits = "mm"\n{budget}\n[[pass]]\n'
-        f'use = "volumetric"\n'
+        f'format = 1\n[input]\ndialect = "fanuc"\n{budget}\n[[pass]]\nuse = "volumetric"\n'
         f"model = '{example / 'model.toml'}'\npart-origin = [0, 0, 0]\n{passes}\n"
         f"[output]\n{output}\n"
     )

@@ -74,7 +74,7 @@ def test_what_is_missing_is_all_that_is_missing(here: Path, name: str) -> None:
 
 def test_one_unknown_start_is_one_finding_with_twelve_places(here: Path) -> None:
     body = "".join(f"G1 X{n}. F100.\n" for n in range(1, 13))
-    (here / "p.nc").write_text(f"O0001\nG91\n{body}M30\n")
+    (here / "p.nc").write_text(f"O0001\nG21 G91\n{body}M30\n")
     _, out, err = check(here, "fanuc", "absolute", "-t", "haas")
     assert "1 finding at 12 lines" in out
     assert err.count("error[") == 1

@@ -194,8 +194,9 @@ CODES: dict[str, tuple[str, str]] = {
         "In which unit the program begins is not known",
         "On this control a setting says whether programs begin in millimetres or in inches, and "
         "this one has lengths before G20 or G21. Where its words stay as they are, that is all "
-        "the same. Here they become others: positions that an error is taken off, pieces of a "
-        "length, words for another control; a guess would be wrong by a factor of 25.4. Say "
+        "the same. For another control, and with G21 written at its head, a guess would make the "
+        "part 25.4 times as large or as small: it is refused. Where an error is taken off its "
+        "positions, or moves are cut to a length, these are taken for mm, with a warning. Say "
         '`units = "mm"` or `units = "in"` in [input], as the setting stands on the machine that '
         "the program is for, or write G21 or G20 at its beginning.",
     ),

@@ -136,7 +136,7 @@ class Interpreter:
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
         state.memory |= {"tool-length": NUMBER["G49"], "extrusion": 0, "extruded": 0}
-        state.memory |= {"centres": 0, "unit-open": int(self.reading.unit_open)}
+        state.memory |= {"centres": 0, "unit-open": int(self.reading.unit_open != "")}
         return state
 
     def _given(self) -> dict[Key, float]:

@@ -79,8 +79,8 @@ class Reading:
                   how fast, or how smooth, goes along, in comments that nobody else can write
     modes_count   whether what is written depends on units, plane and feed mode: not where words of
                   the same coordinates are said in another way
-    unit_open     whether that depends on a unit in which the program begins and nobody knows: it
-                  has to be said before the first length
+    unit_open     whether that depends on a unit in which the program begins and nobody knows:
+                  "refused" where the size of the part would, "told" where corrections and cuts do
     parameters    values of parameters before the first block, by number ("100") or name ("<a>")
     subprograms   folders in which subprograms are looked up, behind that of the program
     told          values of parameters that a file of the control gives, named as in `parameters`
@@ -107,7 +107,7 @@ class Reading:
     stays: bool = False
     asides: bool = False
     modes_count: bool = False
-    unit_open: bool = False
+    unit_open: str = ""
     subprograms: tuple[Path, ...] = ()
     told: Mapping[str, float] = field(default_factory=dict)
     entry: Entry = field(default_factory=Entry)

@@ -255,9 +255,18 @@ class Plan:
         curves = not same or any(LINEAR_ONLY in step.ensures for step in self.path_passes)
         own = self.source.translator is self.target.translator and not (same or stays)
         reading = replace(reading, curves=curves, stays=stays, asides=own)
-        cuts = any(not step.demands.keeps_rows for step in self.path_passes)  # by lengths in mm
-        open_ = self.source.program_rule.unit_is_set and not reading.units and (counts or cuts)
+        open_ = self._open_unit(counts) if not reading.units else ""
         return replace(reading, crosses=not same, modes_count=counts, unit_open=open_)
+
+    def _open_unit(self, counts: bool) -> str:
+        """Return what is done where a setting decides in which unit a program begins."""
+        if not self.source.program_rule.unit_is_set:
+            return ""
+        says_it = any(METRIC in step.ensures for step in self.path_passes)
+        if says_it or self.source is not self.target:
+            return "refused"
+        cuts = any(not step.demands.keeps_rows for step in self.path_passes)  # by lengths in mm
+        return "told" if counts or cuts else ""
 
     def reading_at_start(self, axes: str) -> Reading:
         """Return what is known at the start; where only programmed words are written, 0 for axes.

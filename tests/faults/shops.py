@@ -43,9 +43,23 @@ FAULTS = (
     (
         "the unit that a setting decides is said",
         "gcxform/pipeline/plan.py",
-        "and not reading.units and (counts or cuts)",
-        "and not reading.units and (False or cuts)",
+        "if says_it or self.source is not self.target:",
+        "if says_it:",
         f"{CASE}[dialects/across/unit-of-a-setting]",
+    ),
+    (
+        "of a unit that a setting decides nothing is said",
+        "gcxform/pipeline/plan.py",
+        'return "told" if counts or cuts else ""',
+        'return "told" if counts else ""',
+        "tests/test_cli.py::test_a_unit_that_a_setting_decides_is_told_where_moves_are_cut",
+    ),
+    (
+        "a unit that is said behind the first length counts for it",
+        "gcxform/modal/moves/open_units.py",
+        "before = slice(0, int(said[0]) if len(said) else lines.live)",
+        "before = slice(0, 0 if len(said) else lines.live)",
+        f"{CASE}[dialects/haas/unit-of-a-setting-metric]",
     ),
     (
         "behind a cycle that may drill or not the tool stands at R",

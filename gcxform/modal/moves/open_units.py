@@ -1,22 +1,25 @@
 """Lengths before G20 or G21, on a control of which a setting says in which unit programs begin.
 
-Where their words are written as they stand it is the same program in either. Where positions are
-made of them, or words for another control, it would be 25.4 times as large or as small.
+Where their words are written as they stand it is the same program in either. For another control,
+or with G21 at its head, the part would be 25.4 times as large or as small: refused. Where an error
+is taken off its positions, or moves are cut, that alone would be so, and a warning says it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.modal.lines import LENGTHS, Lines
 
 OPEN = "unit-open"
-MESSAGE = "a length before G20 or G21: a setting of this control says whether it is in mm or inches"
+CODE = "GX235"
+MESSAGE = "a length before G20 or G21, in mm or inches as a setting of this control has it"
 HINT = 'units = "mm" in [input], or units = "in" in [input] where the setting says inches'
 
 
 def refuse_open_units(lines: Lines) -> None:
-    """Refuse the first length of a program whose unit nobody has said."""
+    """Refuse the first length of a program whose unit nobody has said, or warn of it."""
     if not lines.state.memory[OPEN] or not lines.live:
         return
     said = np.flatnonzero(lines.stated("units")[: lines.live])
@@ -28,4 +31,11 @@ def refuse_open_units(lines: Lines) -> None:
         long |= has[: lines.live] & (value[: lines.live] != 0)
     if found := np.flatnonzero(long[before])[:1].tolist():
         lines.state.memory[OPEN] = 0
-        lines.findings.add(found[0], "GX235", MESSAGE, hint=HINT)
+        if lines.reading.unit_open == "refused":
+            lines.findings.add(found[0], CODE, MESSAGE, hint=HINT)
+            return
+        where = lines.findings.location(found[0], 1, 1)
+        taken = "in inches" if lines.state.groups["units"] else "in mm"
+        message = f"{MESSAGE}: taken to be {taken}"
+        warning = Diagnostic(CODE, message, where, HINT, severity=Severity.WARNING)
+        lines.state.assumed[message] = warning
