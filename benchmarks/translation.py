@@ -68,6 +68,8 @@ CONTOURS = "corners=arc entry=own"
 """How the source takes the corners and the entry of a contour, where parameters decide."""
 INCREMENTS = {"fanuc": {None: "IS-B", "calculator": "calculator IS-B"}}
 """The steps to which a control rounds what it computes: of most machines those of 0.001 mm."""
+UNITS = {"fanuc": "mm", "haas": "in"}
+"""Those in which programs begin that do not say it: Setting 9 of a Haas as it is delivered."""
 SLASHES = "execute"
 """The switch for blocks with a slash is off."""
 DROPPED = ("M31", "M33")
@@ -108,6 +110,7 @@ def asked_for(made: Pipeline) -> Pipeline:
             reading,
             increment=steps.get(reading.increment, reading.increment),
             block_delete=reading.block_delete or SLASHES,
+            units=reading.units or UNITS.get(made.source.name, ""),
         ),
     )
     machine = made.machine

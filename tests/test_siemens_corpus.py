@@ -48,7 +48,7 @@ def there_and_back(job):
     """Return how a program and what it became differ, and that and what it became again."""
     filled = corpus.filled_in(job.dialect, job.path, "absolute", job.corpus)
     reading = filled.machine_reading
-    reading = replace(reading, control={**reading.control, **KNOWN})
+    reading = replace(reading, control={**reading.control, **KNOWN}, units="mm")
     there = Pipeline(filled.source, SIEMENS, (ExpandCycles(), Absolute()), reading).run(job.text)
     plain = replace(reading, increment=None)
     back = Pipeline(SIEMENS, filled.source, (Absolute(),), plain).run(there.text)

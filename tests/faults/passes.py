@@ -391,6 +391,13 @@ MUTATIONS = (
         f"{CORPUS}[feed/full-circle]",
     ),
     Mutation(
+        "volumetric: a way home that becomes one by G53 is compensated",
+        "plugins/gcxform_plugins/passes/volumetric/forward/window.py",
+        "    left |= np.array([frame.machine for frame in path.frames])[path.frame]\n",
+        "",
+        f"{CORPUS}[volumetric/home-for-another-control]",
+    ),
+    Mutation(
         "a program without end leaves its feed mode behind",
         "gcxform/pipeline/run.py",
         "if any(step.demands.feed_mode is not None for step in self.steps):",

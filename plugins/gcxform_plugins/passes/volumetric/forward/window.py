@@ -17,10 +17,11 @@ PROOF_SHARE = 0.25  # of a tolerance, at most
 def left_to_machine(path: gx.Toolpath, skip: bool = False) -> Flags:
     """Return the rapids (n,) that are not compensated; `skip`: all of them.
 
-    These are moves to points of the machine itself (G28, G53), and those that end where some axis
-    is at an unknown place, as between a tool change and the first Z.
+    These are moves to points of the machine itself (G28, G53, and G28 that becomes G53), and those
+    that end where some axis is at an unknown place, as between a tool change and the first Z.
     """
     left = np.isnan(path.end[:, :3]).any(axis=1) | skip
+    left |= np.array([frame.machine for frame in path.frames])[path.frame]
     left |= (path.form == gx.Form.HOME) | (path.form == gx.Form.MACHINE)
     return np.asarray(left & (path.kind == gx.Kind.RAPID))
 
