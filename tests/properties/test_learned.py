@@ -162,7 +162,10 @@ def test_nothing_is_learnt_by_what_is_not_keyed() -> None:
     assert [*translator.run()][-1][1][-1] == "X4 P4"
 
 
-def test_most_lines_of_a_program_are_learnt(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("reading", READINGS[1::2], ids=["translated", "stays"])
+def test_most_lines_of_a_program_are_learnt(
+    monkeypatch: pytest.MonkeyPatch, reading: Reading
+) -> None:
     """One value that every line looks at, and that is not keyed, would cost all of it."""
     translator = default_registry().dialect("siemens").translator
     assert translator is not None
@@ -175,5 +178,5 @@ def test_most_lines_of_a_program_are_learnt(monkeypatch: pytest.MonkeyPatch) -> 
     blocks = translator.blocks
     monkeypatch.setattr(translator, "blocks", counted)
     lines = [f"G1 X{k} Y{k % 7}.5\nG3 X={k + 5} Y{k % 7}.5 CR=3" for k in range(100)]
-    found("\n".join([*HEAD, *lines, "M30", ""]), "siemens", READINGS[0])
+    found("\n".join([*HEAD, *lines, "M30", ""]), "siemens", reading)
     assert len({*one_by_one}) < 20

@@ -27,10 +27,10 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import (
     words_of,
 )
 from gcxform_plugins.dialects.siemens.effects import AGAINST, effect_of
-from gcxform_plugins.dialects.siemens.in_place import InPlace
 from gcxform_plugins.dialects.siemens.line import FRAMES, Line
 from gcxform_plugins.dialects.siemens.lines import Lines
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
+from gcxform_plugins.dialects.siemens.scaling import Scaling
 from gcxform_plugins.dialects.siemens.structure import code
 
 DECIDES = re.compile(
@@ -65,8 +65,6 @@ KEEPS = (
     "units, plane, feed mode and compensation are taken to be as before"
 )
 MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
-SCALES = re.compile(r"(?<![A-Z0-9_])[AC]?SCALE[ \t]*[(XYZ]|,[ \t]*SC[ \t]*\]", re.IGNORECASE)
-"""What makes a contour larger than its words: how near lines are to an arc does not say there."""
 UNREAD = gx.Item("flow", ("",), (), (0, 0))
 KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
 """Commands and M codes that move nothing."""
@@ -78,14 +76,13 @@ STATE = (
 )
 
 
-class Programs(InPlace):
+class Programs(Scaling):
     """Executes the lines of a program for a SINUMERIK."""
 
     writes = True
     speller = Lines
     kept = KEPT
     against = AGAINST
-    _scaled = -1, False
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError."""
@@ -374,15 +371,9 @@ class Programs(InPlace):
     def _arc(self, line: Line) -> tuple[str, dict[str, float], list[str]]:
         if self.reading.stays and not all(map(self.place.stands, self.plane)):
             self.refuse("an arc, and where it starts is not known", self.any_of(line))
-        if self.reading.stays and self._scales():
+        if self.reading.stays and self.scales:
             self.refuse("an arc in a program that scales", self.any_of(line))
         return super()._arc(line)
-
-    def _scales(self) -> bool:
-        """Whether anything in the program, and what it has called yet, may scale."""
-        if self._scaled[0] != len(self.lines):
-            self._scaled = len(self.lines), SCALES.search("\n".join(self.lines)) is not None
-        return self._scaled[1]
 
     def _check_tool(self, line: Line) -> None:
         """Ask nothing of the tool where words are words of the same control again."""
