@@ -4,10 +4,10 @@
                                      [--bare]
 
 The programs are those of `corpus.py`, with the machines that it gives them and what their users
-know besides (`round_trips.toml`). What counts is a
-program without macros that goes through `absolute` in its own dialect, and is no file of a
-subprogram. *Round* is one that is proved on both ways, and whose three programs `compare` the same
-within what rounding does; codes that both certificates list as said otherwise are not compared.
+know besides (`round_trips.toml`). What counts is a program without macros that goes through
+`absolute` in its own dialect, and is no file of a subprogram. *Round* is one that is proved on both
+ways, and whose three programs `compare` the same within what rounding does; codes that both
+certificates list as said otherwise are not compared.
 Both ways take what hints offer: a pass, a code to be left out, and that a tool change moves no axis
 (`--bare` takes nothing).
 """
@@ -140,7 +140,6 @@ def _made(job: Job, known: Mapping[str, str | float]) -> Pipeline:
     """Return the pipeline of a program, with what is known of the control that it is said to."""
     made = filled_in(job.dialect, job.path, "absolute", job.corpus)
     for user in users(job):
-        known = {**known, **user.get("control", {})}
         made = _told(made, user)
     if made.machine is None:
         return replace(made, reading=replace(made.reading, control=known))
