@@ -244,7 +244,7 @@ CODES: dict[str, tuple[str, str]] = {
         "Its programs are not written in words. They are turned into blocks that are, and what is "
         "written has to be a program of another control: name it in [output], or with -t. A "
         "SINUMERIK, a Fagor or a TNC may be written from itself and from other controls, by passes "
-        "that change no text; a TNC by such as put no stamp into programs.",
+        "that change no text.",
     ),
     "GX748": (
         "A tolerance without a unit, and a large one",

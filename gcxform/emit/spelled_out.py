@@ -12,6 +12,7 @@ from pathlib import PurePath
 
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.flow.speller import Speller, UnspeakableError
+from gcxform.stamps.comment import OPEN_SEAL
 
 INCHES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*20(?![0-9.])", re.IGNORECASE)
 MILLIMETRES = re.compile(rb"(?<![A-Z0-9.])G[ \t]*0*21(?![0-9.])", re.IGNORECASE)
@@ -27,12 +28,14 @@ def spelled_out(
     inch: bool,
     inert: frozenset[str] = frozenset(),
     asides: bool = False,
+    seals: bool = False,
 ) -> tuple[bytes, list[int], Counter[str]]:
     """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
     `source` are lines of the program, from 0, of which the blocks are. `inert` are M codes of the
     target that leave its axes where they stand; `asides`: whether a translator of the language has
-    put into comments what goes along. Raises InputError for a block that cannot be said.
+    put into comments what goes along. `seals`: its last comment is a seal that is still open.
+    Raises InputError for a block that cannot be said.
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
     speller.inert, speller.asides = inert, asides
@@ -49,7 +52,7 @@ def spelled_out(
         of += [line] * len(said)
     both = [*speller.gathered([*zip(lines, of, strict=True)])]
     lines, of = [line for line, _ in both], [line for _, line in both]
-    ends = speller.closing()
+    ends = [*(speller.lines(f"({OPEN_SEAL})") if seals else ()), *speller.closing()]
     lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]
     return "".join(f"{line}\n" for line in lines).encode("latin-1"), of, speller.left_out
 

@@ -6,7 +6,6 @@ import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterable
-from typing import ClassVar
 
 COMMENT = re.compile(r"\(([^()]*)\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
@@ -30,16 +29,12 @@ class Speller(ABC):
 
     Whatever comes out is read again by the grammar of the language, and has to be the same program.
 
-    `comment` begins a line that says nothing to the control, wherever one may stand behind the end
-    of a program; nothing where none may. `inert` are M codes that leave the axes where they stand.
-    `asides`: what goes along as it was programmed stands in comments, which nobody else than a
-    translator can have written.
+    `inert` are M codes that leave the axes where they stand. `asides`: what goes along as it was
+    programmed stands in comments, which nobody else than a translator can have written.
     """
 
     inert: frozenset[str] = frozenset()
     asides: bool = False
-
-    comment: ClassVar[str] = ""
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name

@@ -50,11 +50,15 @@ class Output:
         self._write(text, lines)
 
     def close(self, heads: Heads) -> None:
-        """Write what has been held back, and the seal if the program has a head."""
+        """Write what has been held back, and the seal if the program has a head.
+
+        A program in a language of its own has sealed itself.
+        """
+        self.stamps_in, self.stamps_out = heads.removed, heads.added + bool(heads.added)
         if self.seal is None:
             return
         text, lines = self.seal.close(heads.line_end, not heads.waits)
-        self.stamps_in, self.stamps_out = heads.removed, heads.added + self.seal.added
+        self.stamps_out = heads.added + self.seal.added
         self._write(text, lines)
 
     def _write(self, text: bytes, lines: Lines) -> None:

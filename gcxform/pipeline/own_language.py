@@ -14,10 +14,8 @@ from gcxform.contract.passes import PassContext
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.stamps.chain import stamp_of
-from gcxform.stamps.comment import Stamp
 
 TEXT = "this changes text, and is for programs of words: those for {} have a language of their own"
-STAMP = "what is compensated is stamped, and programs for {} have no place for it behind their end"
 HINT = 'dialect = "linuxcnc" in [output]; `gcxform list dialects`'
 
 
@@ -53,8 +51,7 @@ def check_target(plan: Plan) -> None:
     if (plan.copies and not plan.passes) or writes_back(plan) or _spells_out(plan):
         return
     if getattr(target.translator, "speller", None) is not None:
-        said = TEXT if plan.text_passes else STAMP
-        raise UsageError.one("GX747", said.format(target.name), hint=HINT)
+        raise UsageError.one("GX747", TEXT.format(target.name), hint=HINT)
     check_written(target)
 
 
@@ -73,20 +70,10 @@ def writes_back(plan: Plan) -> bool:
     positions.
     """
     same = plan.source is plan.target and getattr(plan.source.translator, "writes", False)
-    return same and not plan.text_passes and _stamp_of(plan) is None
+    return same and not plan.text_passes and stamp_of(plan.passes, plan.context, plan.words) is None
 
 
 def _spells_out(plan: Plan) -> bool:
-    """Whether a program is written whole in the language of its target.
-
-    What changes text is for programs of words, and so are stamps where the language has no comment
-    that may stand behind the end.
-    """
+    """Whether a program is written whole in the language of its target."""
     speller = getattr(plan.target.translator, "speller", None)
-    if speller is None or plan.text_passes or plan.source is plan.target:
-        return False
-    return bool(speller.comment) or _stamp_of(plan) is None
-
-
-def _stamp_of(plan: Plan) -> Stamp | None:
-    return stamp_of(plan.passes, plan.context, plan.words)
+    return speller is not None and not plan.text_passes and plan.source is not plan.target

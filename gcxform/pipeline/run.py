@@ -24,6 +24,7 @@ from gcxform.pipeline.cutter_comp import check_compensated
 from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
+from gcxform.pipeline.own_language import writes_back
 from gcxform.pipeline.placing import placing
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.reasons import changed_lines
@@ -86,7 +87,7 @@ class Run:
         self.steps, self.assumed = self.plan.path_passes, (*self.source.assumed, *said)
         self.executed = getattr(self.source, "executed", None)
         self.files = not_done_yet(plan, getattr(self.source, "files", ()))
-        self.structure = structure_of(plan, source, self.source, bool(self.marks.read))
+        self.structure = structure_of(plan, source, self.source, self.marks)
         if self.executed is not None:
             self.executed.refuse(self.marks.changes, self.structure is not None)
         self.source, self.dialect = plan.without_tip_codes(self.source)
@@ -114,10 +115,9 @@ class Run:
         return None if self.stages is None else self.stages.verifier
 
     def _heads(self) -> Heads | None:
-        """Return what writes stamps; None where there are none, or every byte is copied."""
-        if not (self.marks.changes or self.marks.read) or (
-            self.plan.copies and not self.plan.text_passes
-        ):
+        """Return what writes stamps; None where there are none, or those that there are stay."""
+        stay = writes_back(self.plan) or (self.plan.copies and not self.plan.text_passes)
+        if stay or not (self.marks.changes or self.marks.read):
             return None
         target = self.plan.target
         lines = [comment_line(target, stamp.content) for stamp in self.marks.written]
@@ -169,8 +169,9 @@ class Run:
 
     def over(self, out: Output, progress: Progress, size: int = 0) -> None:
         """Run over the program, `size` bytes at a time. Raises GcxformError."""
-        if self.heads is not None:
+        if self.heads is not None and not isinstance(self.structure, SpelledOut):
             out.seal = Seal(self.plan.target, out.written, self.marks.seal)
+        if self.heads is not None or isinstance(self.structure, WrittenBack):
             out.proof = StampReader() if self.verify != "off" else None
         try:
             self._over(size, out, progress)
@@ -180,8 +181,9 @@ class Run:
             self._fold(self.structure, out)
         if self.heads is not None:
             out.close(self.heads)
-            if out.proof is not None and (self.findings.moves or not self.heads.waits):
-                check_stamps(out.proof.found, self.marks)
+        bare = self.heads is not None and self.heads.waits and not self.findings.moves
+        if out.proof is not None and not bare:
+            check_stamps(out.proof.found, self.marks)
 
     def _over(self, size: int, out: Output, progress: Progress) -> None:
         """Run over the windows of a program.
@@ -215,7 +217,10 @@ class Run:
             reading = self.plan.reading_of_output(self.plan.machine_reading)
             structure.prove(folded, reading, self.account, self.findings)
         out.lines_in = structure.lines_read
-        out.put(*self.text.edit(folded.text, list(folded.lines), True))
+        text = folded.text
+        if not isinstance(structure, Structure):
+            text = structure.sealed(text)
+        out.put(*self.text.edit(text, list(folded.lines), True))
 
     def _proof(self, long: bool) -> Worker[Findings]:
         """Return who proves windows: one reads what was written, and another compares."""

@@ -12,6 +12,8 @@ from gcxform.pipeline.chain import facts_after
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.structure import Structure
 from gcxform.proof.findings import Findings
+from gcxform.stamps.chain import Marks
+from gcxform.stamps.comment import sealed_anew, without_lines
 from gcxform.syntax.source import Source, lines_in
 from gcxform.toolpath.facts import ABSOLUTE
 from gcxform.values import dataclass
@@ -29,11 +31,12 @@ class WrittenBack:
     plan: Plan
     given: Source
     source: Translated
+    marks: Marks
     parts: list[Emitted] = field(default_factory=list)
     why: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, plan: Plan, given: Source, source: Source) -> WrittenBack | None:
+    def of(cls, plan: Plan, given: Source, source: Source, marks: Marks) -> WrittenBack | None:
         """Return what writes a program in its own language; None where that is another's."""
         if plan.source is not plan.target or plan.source.translator is None:
             return None
@@ -41,7 +44,7 @@ class WrittenBack:
 
         if not isinstance(source, Translated):
             return None
-        return cls(plan, given, source)
+        return cls(plan, given, source, marks)
 
     @property
     def lines_read(self) -> int:
@@ -68,6 +71,10 @@ class WrittenBack:
             check_kept(self.source, written, self.plan.target)
             text = respelled(given, self.source, blocks, counting)
         return Folded(text, tuple(range(len(text.splitlines()))), (), ())
+
+    def sealed(self, text: bytes) -> bytes:
+        """Return a proved program with its seal: its stamps stay where they stand."""
+        return sealed_anew(text) if self.marks.read.fits else text
 
     @property
     def _stays(self) -> bool:
@@ -102,15 +109,16 @@ class SpelledOut:
     given: Source
     source: Source
     kind: type[Speller]
+    marks: Marks
     parts: list[Emitted] = field(default_factory=list)
     why: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, plan: Plan, given: Source, source: Source) -> SpelledOut | None:
+    def of(cls, plan: Plan, given: Source, source: Source, marks: Marks) -> SpelledOut | None:
         """Return what writes a program in another language; None where that is one of words."""
         kind = getattr(plan.target.translator, "speller", None)
-        return None if kind is None or plan.copies else cls(plan, given, source, kind)
+        return None if kind is None or plan.copies else cls(plan, given, source, kind, marks)
 
     @property
     def lines_read(self) -> int:
@@ -122,21 +130,34 @@ class SpelledOut:
         from gcxform.emit.folding import Folded
         from gcxform.emit.spelled_out import spelled_out
 
-        blocks = [line for part in self.parts for line in part.text.splitlines()]
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
-            blocks,
+            self._blocks.splitlines(),
             lines,
             self.kind,
             self.given.name,
             inch,
             self.plan.inert,
             self.plan.machine_reading.asides,
+            self._seals,
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
+
+    def sealed(self, text: bytes) -> bytes:
+        """Return a proved program with the digits of its seal."""
+        return sealed_anew(text, self.marks.seal) if self._seals else text
+
+    @property
+    def _blocks(self) -> bytes:
+        return b"".join(part.text for part in self.parts)
+
+    @property
+    def _seals(self) -> bool:
+        """Whether a seal is wanted: there is a stamp."""
+        return self.marks.seal != "" and without_lines(self._blocks) != self._blocks
 
     def prove(self, folded: Folded, reading: Reading, account: Account, findings: Findings) -> None:
         """Check that a program is the one that has been proved. Raises VerificationError."""
@@ -144,8 +165,7 @@ class SpelledOut:
 
         del account
         written = Source.of_bytes(folded.text, self.given.name)
-        blocks = b"".join(part.text for part in self.parts)
-        check_spelled_out(written, blocks, self.plan.target, replace(reading, crosses=True))
+        check_spelled_out(written, self._blocks, self.plan.target, replace(reading, crosses=True))
         if findings.output_line:
             of = [line for part in self.parts for line in part.source.tolist()]
             line = self.source.line_of(of[findings.output_line - 1] + 1) - 1
@@ -153,8 +173,8 @@ class SpelledOut:
 
 
 def structure_of(
-    plan: Plan, given: Source, source: Source, takes_stamps: bool
+    plan: Plan, given: Source, source: Source, marks: Marks
 ) -> Structure | WrittenBack | SpelledOut | None:
     """Return what hands a program on as it was programmed; None where its blocks are written."""
-    back = WrittenBack.of(plan, given, source) or SpelledOut.of(plan, given, source)
-    return Structure.of(plan, given, source, takes_stamps) if back is None else back
+    back = WrittenBack.of(plan, given, source, marks) or SpelledOut.of(plan, given, source, marks)
+    return Structure.of(plan, given, source, bool(marks.read)) if back is None else back

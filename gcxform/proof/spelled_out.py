@@ -6,6 +6,7 @@ grammar of the language, and both are interpreted: moves, modes and events have 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from decimal import Decimal
@@ -15,7 +16,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.dialect import Dialect
-from gcxform.flow.speller import Speller
+from gcxform.flow.speller import ASIDE, Speller
 from gcxform.flow.translated import translated
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
@@ -41,6 +42,7 @@ MACHINE = "machine"
 """The act of codes for a move in coordinates of the machine."""
 ALONG = 2
 """The axis of tool lengths: Z."""
+ASIDES = re.compile(rb"\(%b([^()]*)\)" % ASIDE.encode())
 Values = tuple[tuple[str, float], ...]
 
 
@@ -57,6 +59,9 @@ def check_spelled_out(
         message = f"{dialect.name} would not read what is written: {first.message}"
         raise InputError((Diagnostic("GX501", message, first.where, first.hint),)) from None
     told = blocks.splitlines(), found.text.splitlines()
+    if reading.asides and ASIDES.findall(blocks) != ASIDES.findall(found.text):
+        message = "what was written is another program: what goes along does not"
+        raise VerificationError.one("GX601", message, Location(written.name))
     wrong = (*_differences(wanted, now, dialect, *told), *_places(wanted, now, dialect, *told))
     for row, what in wrong:
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)

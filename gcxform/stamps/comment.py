@@ -32,12 +32,14 @@ FACTS = ("NOMINAL", "COMPENSATED", "TIP", "AXES")
 PAIRS = (FACTS[:2], FACTS[2:])
 """What positions may be, in pairs of which one excludes the other."""
 
+OPEN_SEAL = "GCXFORM SEAL " + "0" * DIGITS
+"""A seal whose digits are to come: see `sealed_anew`."""
 _ANY = re.compile(
     rb"[(;][ \t]*GCXFORM[ \t]*(STAMP|SEAL)[ \t]*([0-9A-F]{%d})([^()\r\n]*)" % DIGITS, re.IGNORECASE
 )
 _LINE = re.compile(
-    rb"(?:^|(?<=[\r\n]))[ \t]*(?:N[ \t]*\d+[ \t]*)?[(;][ \t]*GCXFORM[ \t]*(STAMP|SEAL)[ \t]*"
-    rb"[0-9A-F]{%d}[^()\r\n]*\)?[ \t]*(?:\r\n|\n|\r|\Z)" % DIGITS,
+    rb"(?:^|(?<=[\r\n]))[ \t]*(?:N?[ \t]*\d+[ \t]*)?[(;][ \t]*GCXFORM[ \t]*(STAMP|SEAL)[ \t]*"
+    rb"([0-9A-F]{%d})[^()\r\n]*\)?[ \t]*(?:\r\n|\n|\r|\Z)" % DIGITS,
     re.IGNORECASE,
 )
 _SAID = re.compile(
@@ -216,6 +218,16 @@ def is_stamp(line: str) -> bool:
 def without_lines(text: bytes, kinds: Sequence[str] = ("STAMP", "SEAL")) -> bytes:
     """Return whole lines without those that are stamps and nothing else."""
     return b"".join(part for part, gone in parts(text, kinds) if not gone)
+
+
+def sealed_anew(text: bytes, digits: str | None = None) -> bytes:
+    """Return a text whose one seal fits it, or has the digits that are given."""
+    for found in _LINE.finditer(text):
+        if found[1].upper() == b"SEAL":
+            rest = text[: found.start()] + text[found.end() :]
+            new = short(hashlib.sha256(sealed(rest)).hexdigest()) if digits is None else digits
+            return text[: found.start(2)] + new.encode() + text[found.end(2) :]
+    return text
 
 
 def parts(text: bytes, kinds: Sequence[str] = ("STAMP", "SEAL")) -> Iterator[tuple[bytes, bool]]:

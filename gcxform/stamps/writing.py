@@ -52,12 +52,6 @@ def comment_line(dialect: type[Dialect], content: str) -> bytes:
     return b""
 
 
-def last_line(dialect: type[Dialect], content: str) -> bytes:
-    """Return a comment for the end of a file, which may be in a language of its own."""
-    begin = getattr(getattr(dialect.translator, "speller", None), "comment", "")
-    return (begin + content).encode() if begin else comment_line(dialect, content)
-
-
 class Heads:
     """Takes stamps out of the windows of a text, and puts lines at its head."""
 
@@ -168,7 +162,7 @@ class Seal:
         digest = (self.own or self.written).copy()
         digest.update(sealed(before + self.held))
         digits = short(digest.hexdigest()) if self.fixed is None else self.fixed
-        line = last_line(self.dialect, f"GCXFORM SEAL {digits}") if digits and seals else b""
+        line = comment_line(self.dialect, f"GCXFORM SEAL {digits}") if digits and seals else b""
         if not line:
             return self.held, self.lines
         self.added = 1

@@ -43,7 +43,82 @@ FREE = "plugins/gcxform_plugins/dialects/heidenhain/free.py"
 FREE_TESTS = "tests/test_klartext_free.py"
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
+COMPENSATED = "tests/test_corpus.py::test_case[dialects/heidenhain-compensated"
+ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_compensated_again"
+
 MUTATIONS = (
+    Mutation(
+        "klartext: a compensated program leaves out its preset",
+        DATUMS,
+        'return [*self.along("CYCL DEF 247',
+        'return [][:0] and [*self.along("CYCL DEF 247',
+        f"{COMPENSATED}]",
+    ),
+    Mutation(
+        "klartext: a compensated program leaves out what its tools measure",
+        PROGRAM,
+        "return self.along() if match[2] or match[3] else",
+        "return [] if match[2] or match[3] else",
+        f"{COMPENSATED}]",
+    ),
+    Mutation(
+        "klartext: a compensated program leaves out cycle 32 but for its tolerance",
+        CYCLES,
+        """            return self.along()
+        found""",
+        """            return self.along() if part < 2 else []
+        found""",
+        f"{COMPENSATED}]",
+    ),
+    Mutation(
+        "klartext: a compensated program leaves out M functions that move nothing",
+        SAID,
+        'return self.along(f"M{code}")',
+        "return []",
+        "tests/test_languages_compensated.py::test_m_functions_of_klartext_go_along",
+    ),
+    Mutation(
+        "klartext: a compensated program loses a parameter that outlives it",
+        PARAMETERS,
+        'return self.along(f"{key} = {written(value)}")',
+        "return []",
+        f"{COMPENSATED}]",
+    ),
+    Mutation(
+        "klartext: a compensated program no more writes into a table",
+        PARAMETERS,
+        "if number == WRITES:",
+        "if number < 0:",
+        f"{COMPENSATED}-writes-a-table]",
+    ),
+    Mutation(
+        "klartext: a compensated program rounds other corners by M90",
+        SAID,
+        "if code == ROUNDS:",
+        "if code < 0:",
+        f"{COMPENSATED}-rounds-a-corner]",
+    ),
+    Mutation(
+        "languages: what goes along is not compared",
+        SPELLED,
+        "if reading.asides and ASIDES",
+        "if False and ASIDES",
+        "tests/test_languages_compensated.py::test_what_goes_along_is_compared",
+    ),
+    Mutation(
+        "languages: a program that is written back keeps the seal of what it was",
+        "gcxform/pipeline/written_back.py",
+        "return sealed_anew(text) if self.marks.read.fits else text",
+        "return text",
+        ONCE,
+    ),
+    Mutation(
+        "languages: a program that was edited is sealed as if it had not been",
+        "gcxform/pipeline/written_back.py",
+        "return sealed_anew(text) if self.marks.read.fits else text",
+        "return sealed_anew(text)",
+        ONCE,
+    ),
     Mutation(
         "klartext: a shift of one axis is written, and read as one of three",
         "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
@@ -166,8 +241,8 @@ MUTATIONS = (
     Mutation(
         "heidenhain: a tool that is fetched is not read",
         "plugins/gcxform_plugins/dialects/heidenhain/klartext.py",
-        'return [] if match[2] or match[3] else [f"T{match[1]}"]',
-        "return []",
+        'return self.along() if match[2] or match[3] else [f"T{match[1]}"]',
+        "return self.along()",
         "tests/test_corpus.py::test_case[dialects/across/tools-fetched-for-klartext]",
     ),
     Mutation(

@@ -82,8 +82,8 @@ MUTATIONS = (
     Mutation(
         "siemens: what changes text is taken for a program of words",
         "gcxform/pipeline/own_language.py",
-        "if speller is None or plan.text_passes or plan.source is plan.target:",
-        "if speller is None or plan.source is plan.target:",
+        "not plan.text_passes and plan.source is not plan.target",
+        "plan.source is not plan.target",
         "tests/test_languages_compensated.py::test_what_a_language_has_no_place_for_is_refused",
     ),
     Mutation(

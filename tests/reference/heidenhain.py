@@ -18,7 +18,10 @@ QUIET = ("BLK", "CYCL DEF 32", "CYCL DEF 7.0", "CYCL DEF 9.0", "*")
 
 @dataclass
 class Step:
-    """A move: numbers of the program, in mm and degrees; `turns` are whole ones beyond the arc."""
+    """A move: numbers of the program, in mm and degrees; `turns` are whole ones beyond the arc.
+
+    `shift` is where the zero of the program is.
+    """
 
     kind: str
     end: dict[str, float]
@@ -26,6 +29,7 @@ class Step:
     following: bool
     centre: tuple[float, float] | None = None
     turns: int = 0
+    shift: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass
@@ -204,7 +208,8 @@ def _step(reader: Reader, kind: str, feed: float | None) -> Step:
     scale = {axis: reader.unit if axis in "XYZ" else 1.0 for axis in reader.at}
     end = {axis: value * scale[axis] for axis, value in reader.at.items()}
     rate = None if feed is None else feed * (2.54 if reader.unit != 1.0 else 1.0)
-    return Step(kind, end, rate, reader.following)
+    shift = {axis: value * scale.get(axis, 1.0) for axis, value in reader.shift.items()}
+    return Step(kind, end, rate, reader.following, shift=shift)
 
 
 def _arc(reader: Reader, head: str, found: dict[str, str], sense: int) -> None:

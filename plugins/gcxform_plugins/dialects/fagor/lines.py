@@ -40,8 +40,6 @@ class Lines(gx.Speller):
     over    the program has ended
     """
 
-    comment = "; "
-
     def __init__(self, name: str, inch: bool) -> None:
         bare = re.sub(r"[^A-Z0-9_]", "", name.upper()) or "PART"
         bare = f"P{bare}" if bare.startswith("L") else bare
@@ -60,7 +58,7 @@ class Lines(gx.Speller):
             words = [each for each in words if each != ("G", "64")]
         found = [*asides, *self._said(words)]
         if comments:
-            text = self.comment + " ".join(comments)
+            text = "; " + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
 

@@ -19,7 +19,7 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
-from gcxform_plugins.dialects.heidenhain.parameters import key_of
+from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
@@ -156,6 +156,10 @@ class Cycles(Datums):
 
         No code of words has the builder's tolerance; G64 P0 would be none at all.
         """
+        if self.reading.asides:
+            if NAMED.search(text):
+                self.check_along("cycle 32 by a parameter", item)
+            return self.along()
         found = re.fullmatch(rf"T\s*(?:({VALUE})|([+-]?\s*Q[LR]?\d+))", text)
         if part != 1 or (found is None and not self.bounded):
             return []

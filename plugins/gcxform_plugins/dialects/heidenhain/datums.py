@@ -213,4 +213,4 @@ class Datums(Parameters):
         if number:
             self.assumed[PRESET.format(exact(number))] = None
         self.lose()
-        return []
+        return [*self.along("CYCL DEF 247 DATUM SETTING ~"), *self.along(f" Q339=+{exact(number)}")]

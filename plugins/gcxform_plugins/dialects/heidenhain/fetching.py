@@ -1,8 +1,12 @@
-"""TOOL DEF among the lines of a program: which tool is fetched for the next change."""
+"""TOOL CALL and TOOL DEF among the lines of a program, once all of them are known."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
+
+CALLED = re.compile(r"TOOL CALL [0-9]+ Z")
+SPEED = "TOOL CALL Z"
 
 
 def fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
@@ -15,3 +19,19 @@ def fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
             found.append((line, of))
         after = after if line.startswith(";") else line
     yield from reversed(found)
+
+
+def called_with_speed(lines: Iterable[tuple[str, int]]) -> Iterator[tuple[str, int]]:
+    """Yield lines with the speed in the TOOL CALL of the tool, where one follows upon the other."""
+    called: tuple[str, int] | None = None
+    for line, of in lines:
+        if called is not None and line.startswith(SPEED):
+            called = f"{called[0]}{line.removeprefix(SPEED)}", called[1]
+            continue
+        if called is not None:
+            yield called
+        called = (line, of) if CALLED.fullmatch(line) else None
+        if called is None:
+            yield line, of
+    if called is not None:
+        yield called

@@ -11,6 +11,7 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.parameters import NAMED
 from gcxform_plugins.dialects.heidenhain.words import MM, exact, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
@@ -56,7 +57,7 @@ class Klartext(Cycles):
         self.texts: dict[str, Callable[[gx.Item], list[str]]] = {
             "BEGIN": self._begin,
             "END": self._end,
-            "BLK": _nothing,
+            "BLK": self._blank,
             "TOOL": self._tool_def,
             "CYCL": self.define,
             "CYCLE": self.define,
@@ -80,6 +81,8 @@ class Klartext(Cycles):
             first = items[0]
         kind = first.kind
         if kind == "structure":
+            if self.reading.asides:
+                return self.along()
             words = self.lines[self.line].partition("*")[2].lstrip("* -")
             return [f"({words.strip().translate(BRACKETS)})"]
         if kind == "outside" and not self.begun:
@@ -112,7 +115,7 @@ class Klartext(Cycles):
             return read(item)
         if name.split() == ["PLANE", "RESET", "STAY"]:
             self.ends("PLANE RESET", item)
-            return []
+            return self.along()
         self.refuse(f"{name.strip()[:40]} is not resolved", item)
 
     def _begin(self, item: gx.Item) -> list[str]:
@@ -140,6 +143,10 @@ class Klartext(Cycles):
             raise self.refusal("GX223", "a subprogram does not end with LBL 0", item, LBL_0)
         self.over = True
         return ["M2"]
+
+    def _blank(self, item: gx.Item) -> list[str]:
+        """BLK FORM: the blank, which is only drawn; parameters are worth nothing in what is new."""
+        return [] if NAMED.search(item.name) else self.along()
 
     def stop(self, items: Sequence[gx.Item]) -> list[str]:
         """STOP: the program waits."""
@@ -253,7 +260,7 @@ class Klartext(Cycles):
                 if text and abs(float(plain(text)) * unit - value) > 1e-9:
                     message = f"{what} of tool {match[1]} is another one in the machine file"
                     self.refuse(message, item, "give the tool its measures in one place")
-        return [] if match[2] or match[3] else [f"T{match[1]}"]
+        return self.along() if match[2] or match[3] else [f"T{match[1]}"]
 
     # --- following the tip ---
 
@@ -262,14 +269,11 @@ class Klartext(Cycles):
         said = " ".join(item.name.split())
         if said in (RESET, TCPM):
             self.refuse_beside(said, item)
+            if said == RESET and not self.following and self.reading.asides:
+                return self.along()
             return [*self.switch(said == TCPM)]
         why = next((why for words, why in OTHERWISE.items() if words in said), "")
         self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)
 
 
 BRACKETS = str.maketrans("()", "[]")
-
-
-def _nothing(item: gx.Item) -> list[str]:
-    """BLK FORM: the blank, which is only drawn."""
-    return []

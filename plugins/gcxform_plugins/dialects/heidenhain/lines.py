@@ -12,13 +12,10 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
-from gcxform_plugins.dialects.heidenhain.fetching import fetched_ahead
+from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetched_ahead
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
-COMMENT = re.compile(r"\(([^()]*)\)")
-WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
-BLANKS = str.maketrans("", "", " \t")
 GOES_ON = "~ "
 """What ends a line that the next one goes on with, behind a comment too; and blanks."""
 AXES = "XYZABCUVW"
@@ -70,7 +67,7 @@ class Lines(gx.Speller):
 
     def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
         """Return lines with cycles for the moves of holes; what they are in inches is not read."""
-        lines = [*fetched_ahead(lines)]
+        lines = [*called_with_speed(fetched_ahead(lines))]
         return lines if self.inch else Drilling(lines).gathered()
 
     def numbered(self, lines: list[str]) -> list[str]:
@@ -86,13 +83,12 @@ class Lines(gx.Speller):
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
-        text = " ".join([each.strip() for each in COMMENT.findall(block)])
+        asides, comments, words = self.heard(block)
+        text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
-        bare = COMMENT.sub("", block).partition(";")[0]
-        words = WORD.findall(bare.translate(BLANKS).upper())
         codes = [_code(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
-        found = [*self._said(codes, values)] if codes or values else []
+        found = [*asides, *(self._said(codes, values) if codes or values else ())]
         if comment is not None and found and found[0].endswith("~"):
             found.insert(0, f"; {comment}")
         elif comment is not None and found:

@@ -28,6 +28,7 @@ JUMPS = {9: "EQU", 10: "NE", 11: "GT", 12: "LT"}
 SETS = {0: "", 1: "+", 2: "-", 3: "*", 4: "DIV", 5: "SQRT", 6: "SIN", 7: "COS", 8: "LEN", 13: "ANG"}
 PRINTS = (15, 16, 38)
 READS = (18, 27, 28)
+WRITES = 27
 WHY = {
     14: "FN 14 ends the program with an error",
     17: "FN 17 writes what the control computes with",
@@ -103,16 +104,15 @@ class Parameters(Labels):
                 return []
             raise self.refusal("GX101", f"{item.name.strip()[:40]} is no formula", item) from None
         try:
-            self._execute(item, node)
+            return self._execute(item, node)
         except v.NoValueError as why:
             raise self.refusal(why.code, why.message, item, why.hint) from None
-        return []
 
-    def _execute(self, item: gx.Item, node: Node) -> None:
+    def _execute(self, item: gx.Item, node: Node) -> list[str]:
         """Take FN 9 to 12, or set a parameter. Raises NoValueError where that has no value."""
         if rule_of(node) == "jump":
             self._jump(item, node.children)
-            return
+            return []
         target: Any = node.children[-2]
         value: Any = node.children[-1]
         if rule_of(node) == "set":
@@ -125,6 +125,17 @@ class Parameters(Labels):
             self.q[key] = None
             if not (why.lost and why.code == "GX220"):
                 raise
+        return self._lasting(item, key)
+
+    def _lasting(self, item: gx.Item, key: str) -> list[str]:
+        """Return the block of a parameter that outlives the program, in the same language."""
+        value = self.q[key]
+        if not key.startswith("QR"):
+            return []
+        if value is None or float(written(value)) != value:
+            self.check_along(f"{key}, which outlives the program", item)
+            return []
+        return self.along(f"{key} = {written(value)}")
 
     def _check_kind(self, item: gx.Item, head: str, value: Any) -> None:
         """Refuse FN with the operator of another one. Raises InputError."""
@@ -148,10 +159,16 @@ class Parameters(Labels):
     def _other_function(self, item: gx.Item, number: int, text: str) -> list[str]:
         """FN from 14 on: what it prints is a comment, what it reads only the control knows."""
         if number in READS:
+            if number == WRITES:
+                self.check_along("FN 27 writes into a table", item)
             self.computes = True
             self._forget(text)
             return []
         if number in PRINTS:
+            if number != 15 or NAMED.search(text.upper()):
+                self.check_along(f"FN {number} tells of parameters", item)
+            if self.reading.asides:
+                return self.along()
             return [f"(FN {number} {text.translate(BRACKETS)})"]
         self.refuse(WHY.get(number, f"FN {number} is not resolved"), item)
 

@@ -21,6 +21,7 @@ NEVER_BESIDE = (6, 91, 128, 129)
 SHORTEST = frozenset({126, 127})
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
 """Rounding of corners, messages, and M functions that cancel what is refused here."""
+ROUNDS = 90
 MOVES_ZERO = frozenset({115, 145})
 """Those of them behind which coordinates are others, if what they cancel has been."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
@@ -148,17 +149,25 @@ class Saying(Words):
         elif code in ENDS:
             said.end = f"M{code}"
         elif code in AT_END:
-            said.after += AT_END[code]
+            said.after += AT_END[code] if code != 129 else self._not_following()
             said.leaves |= code == 129
             said.changes |= code == 6
         elif code in SHORTEST:
             self.shortest = code == 126
+            said.before += self.along(f"M{code}")
         elif code in SILENT:
-            if code in MOVES_ZERO:
-                self.ends(f"M{code}", item)
+            said.before += self._silent(code, item)
         else:
             said.before += self._at_start(code, item)
         return code
+
+    def _silent(self, code: int, item: gx.Item) -> list[str]:
+        """Return the block of an M function that moves nothing, where it goes along."""
+        if code in MOVES_ZERO:
+            self.ends(f"M{code}", item)
+        if code == ROUNDS:
+            self.check_along("M90, which acts in its own block", item)
+        return self.along(f"M{code}")
 
     def _at_start(self, code: int, item: gx.Item) -> tuple[str, ...]:
         """Return the blocks of an M function that acts at the start of its block."""
@@ -169,6 +178,10 @@ class Saying(Words):
                 f"M{code} is not resolved: {WHY.get(code, 'what it does is not known')}", item
             )
         return AT_START.get(code, (f"M{code}",))
+
+    def _not_following(self) -> Sequence[str]:
+        """Return the block of M129; where nothing follows the tip it goes along as it stands."""
+        return ("M129",) if self.following or not self.reading.asides else self.along("M129")
 
     def switch(self, on: bool) -> tuple[str, ...]:
         """Follow the tip, or leave it, and return the block of it.

@@ -16,6 +16,9 @@ ROTARY = "ABC"
 LONGEST = 20  # characters of a number
 MM = 25.4  # of an inch
 COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
+HEAD = re.compile(r"[/\d \t]*")
+"""What stands before a statement."""
+STAYS = "`absolute`, which compensates nothing, leaves the line as it stands"
 UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
 
 
@@ -140,6 +143,21 @@ class Words(gx.Translator):
         """Refuse what is not read while the tool is beside the contour. Raises InputError."""
         if self.side:
             self.refuse(f"{what} under radius compensation", item, "write R0 in a line before")
+
+    # --- what goes along ---
+
+    def along(self, text: str = "") -> list[str]:
+        """Return the block of what goes along where all is written anew for a TNC; else nothing.
+
+        Without a text that is the statement of this line, as it stands.
+        """
+        said = text or HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip()
+        return [gx.Speller.aside(said)] if self.reading.asides else []
+
+    def check_along(self, what: str, item: gx.Item) -> None:
+        """Refuse what does more than to move, and would be gone. Raises InputError."""
+        if self.reading.asides:
+            self.refuse(f"{what}, where all lines are written anew", item, STAYS)
 
     # --- words ---
 

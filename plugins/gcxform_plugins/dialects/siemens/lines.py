@@ -60,8 +60,6 @@ class Lines(gx.Speller):
     waits     M6 or SUPA has been, and D has not yet: it is said before Z moves, or by the next code
     """
 
-    comment = "; "
-
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(name, inch)
         self.tool = self.in_spindle = self.length = ""
@@ -84,7 +82,7 @@ class Lines(gx.Speller):
         said = [*asides, *self._said(words)]
         found = [f"{slash[1]}{line}" if slash else line for line in said]
         if comments:
-            text = self.comment + " ".join(comments)
+            text = "; " + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
 
