@@ -285,7 +285,10 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
         if not HOME.fullmatch(code):
             where = document.where("home", code)
             yield Diagnostic(
-                "GX436", f"{code!r} is not a home position", where, 'known: G28, G30, "G30 P2"'
+                "GX436",
+                f"{code!r} is not a home position",
+                where,
+                'known: G28, G30, "G30 P2", M140',
             )
         yield from _strange_axes(document, file, ("home", code), place)
 

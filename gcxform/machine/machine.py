@@ -112,7 +112,8 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
         says('where the zero of a work offset is in the machine, by its code: G54, "G54.1 P1"'),
     ] = {}
     home: Annotated[
-        dict[str, Offset], says("where a reference point is in the machine, by its code: G28, G30")
+        dict[str, Offset],
+        says("where a reference point, or the end of travel, is in the machine: G28, G30, M140"),
     ] = {}
     tool: Annotated[dict[str, Tool], says("a tool by its number, that of T or of H")] = {}
     tool_table: Annotated[str | None, says("a tool table of a control: a file")] = None

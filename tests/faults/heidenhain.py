@@ -9,6 +9,7 @@ CYCLES = "plugins/gcxform_plugins/dialects/heidenhain/cycles.py"
 DATUMS = "plugins/gcxform_plugins/dialects/heidenhain/datums.py"
 LABELS = "plugins/gcxform_plugins/dialects/heidenhain/labels.py"
 MOVES = "plugins/gcxform_plugins/dialects/heidenhain/moves.py"
+POLAR = "plugins/gcxform_plugins/dialects/heidenhain/polar.py"
 SAID = "plugins/gcxform_plugins/dialects/heidenhain/positioning.py"
 WORDS = "plugins/gcxform_plugins/dialects/heidenhain/words.py"
 PROGRAM = "plugins/gcxform_plugins/dialects/heidenhain/klartext.py"
@@ -43,10 +44,32 @@ FREE = "plugins/gcxform_plugins/dialects/heidenhain/free.py"
 FREE_TESTS = "tests/test_klartext_free.py"
 HOLE_TESTS = "tests/test_klartext_holes.py"
 
+CASE = "tests/test_corpus.py::test_case[dialects/heidenhain-"
 COMPENSATED = "tests/test_corpus.py::test_case[dialects/heidenhain-compensated"
 ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_compensated_again"
 
 MUTATIONS = (
+    Mutation(
+        "klartext: CP out of XY turns in XY",
+        POLAR,
+        "radius, begin = hypot(x, y), self._angle(path, axes)",
+        "radius, begin = hypot(x, y), self._angle(path, axes[::-1])",
+        f"{CASE}polar-circle-zx]",
+    ),
+    Mutation(
+        "klartext: CP out of XY counts PA from the first axis",
+        POLAR,
+        'or "IPA" not in given or abs',
+        "or abs",
+        f"{CASE}polar-circle-zx-open]",
+    ),
+    Mutation(
+        "klartext: behind M140 Z is where it was",
+        MOVES,
+        'self.lose("XYZ" if self.turn != 0 or self.mirrored != "" else "Z")',
+        "pass",
+        f"{CASE}end-of-travel-steps]",
+    ),
     Mutation(
         "klartext: a compensated program leaves out its preset",
         DATUMS,
@@ -136,15 +159,15 @@ MUTATIONS = (
     Mutation(
         "klartext: a tap is read whichever way the spindle turns before it",
         CYCLES,
-        "if self.spindle != sense or again is None:",
-        "if again is None:",
+        "if self.spindle != sense:",
+        "if not self.spindle:",
         "tests/test_corpus.py::test_case[dialects/heidenhain-tap-of-the-other-hand]",
     ),
     Mutation(
         "klartext: behind a tap the spindle is taken to turn",
-        CYCLES,
-        "if self.spindle != sense or again is None:",
-        "if self.spindle != sense:",
+        MOVES,
+        "if self.untold:",
+        "if False:",
         "tests/test_corpus.py::test_case[dialects/heidenhain-tap-then-no-spindle]",
     ),
     Mutation(
@@ -254,7 +277,7 @@ MUTATIONS = (
     ),
     Mutation(
         "heidenhain: a polar word may stand twice",
-        "plugins/gcxform_plugins/dialects/heidenhain/moves.py",
+        POLAR,
         "if len({*names}) < len(names):",
         "if False:",
         "tests/test_corpus.py::test_case[dialects/heidenhain-polar-twice]",
@@ -402,8 +425,8 @@ MUTATIONS = (
     Mutation(
         "klartext: one coordinate is enough for a circle out of XY",
         MOVES,
-        "self.following or len(ends) < 2)",
-        "self.following)",
+        'if axes != "XY" and len(ends) < 2:',
+        "if False:",
         "tests/test_corpus.py::test_case[dialects/heidenhain-circle-zx-open]",
     ),
     Mutation(
@@ -800,21 +823,21 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: a turn more or less in a helix",
-        MOVES,
+        POLAR,
         'words += f" P{turns}" if turns > 1 else ""',
         'words += f" P{turns + 1}" if turns > 1 else ""',
         READ,
     ),
     Mutation(
         "klartext: a helix ends beside its circle",
-        MOVES,
-        "ends |= self._at(pole, radius, begin + turn)",
-        "ends |= self._at(pole, radius, begin - turn)",
+        POLAR,
+        "ends |= self._at(pole, radius, begin + turn, axes)",
+        "ends |= self._at(pole, radius, begin - turn, axes)",
         READ,
     ),
     Mutation(
         "klartext: a helix may turn against its sense",
-        MOVES,
+        POLAR,
         "if turn * sense < 0:",
         "if turn * sense > 1e9:",
         REFUSED,

@@ -53,7 +53,7 @@ class Used:
     own_codes: Places = field(default_factory=dict)
     changes: Places = field(default_factory=dict)
     axes: str = "XYZ"
-    of_home: dict[str, str] = field(default_factory=dict)
+    of_home: dict[str, str] = field(default_factory=lambda: {"M140": "Z"})  # along the tool
     calls: Places = field(default_factory=dict)
     length_alone: bool = False
     control: Places = field(default_factory=dict)

@@ -25,7 +25,8 @@ from math import acos, atan2, degrees, hypot
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.contours import BARE, STRAIGHT, Contours
-from gcxform_plugins.dialects.heidenhain.moves import LEAST_ANGLE, SIDES, TURN, around
+from gcxform_plugins.dialects.heidenhain.moves import SIDES
+from gcxform_plugins.dialects.heidenhain.polar import LEAST_ANGLE, TURN, around
 from gcxform_plugins.dialects.heidenhain.positioning import Said
 from gcxform_plugins.dialects.heidenhain.words import Point, exact, written
 

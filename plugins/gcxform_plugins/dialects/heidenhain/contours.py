@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from math import acos, hypot, tan
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.moves import Moves
+from gcxform_plugins.dialects.heidenhain.polar import Polar
 from gcxform_plugins.dialects.heidenhain.positioning import Said
 from gcxform_plugins.dialects.heidenhain.words import Point, written
 
@@ -36,7 +36,7 @@ class Corner:
     code: str
 
 
-class Contours(Moves):
+class Contours(Polar):
     """Rounds corners, and finds the arcs that go on where an element ends."""
 
     corner: Corner | None = None

@@ -202,6 +202,8 @@ class Cycles(Datums):
         self.refuse_beside("a cycle", item)
         if self.following:
             self.refuse("a cycle while the control follows the tip", item)
+        if self.cycle != TAP:
+            self.check_spindle()
         if "Z" in (self.mirrored or ""):
             self.refuse("a cycle in a mirror image along the tool", item)
 
@@ -250,7 +252,7 @@ class Cycles(Datums):
     def _tapped(self, item: gx.Item, told: Mapping[int, Decimal]) -> list[str]:
         """Return the blocks of a tap in step with the spindle: to the ground, and back.
 
-        Whether the spindle turns again behind it is not certain: the next line has to say so.
+        Whether the spindle turns again behind it is not certain: to be said before anything cuts.
         """
         if told.keys() != {*TAPPED.needs} or self.inch or self.mirrored != "":
             message = "cycle 207 in inches or a mirror image, with fewer parameters, or with more"
@@ -262,11 +264,10 @@ class Cycles(Datums):
         sense = "M3" if pitch > 0 else "M4"
         behind = self.lines[self.at] if self.at < len(self.lines) else ""
         again = re.fullmatch(rf"\s*(?:\d+\s+)?{sense}\s*", behind)
-        if self.spindle != sense or again is None:
-            message = f"cycle 207, with {sense} not before it and in the line behind it"
-            hint = f"write {sense} there: whether the spindle then stands is not certain"
-            raise self.refusal("GX215", message, item, hint)
-        self.at += 1
+        if self.spindle != sense:
+            message = f"cycle 207, and {sense} was not before it"
+            raise self.refusal("GX215", message, item, f"write {sense} there")
+        self.at, self.untold = self.at + (again is not None), again is None
         up = exact(surface + clear)
         over = [] if self.place.get("Z") == up else [f"G0 Z{up}"]
         blocks = [*over, f"G33.1 Z{exact(surface + depth)} K{exact(abs(pitch))}"]

@@ -15,6 +15,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | CR | R below 0: more than half a turn | iTNC 530, p. 207 |
 | DR+ | counter-clockwise, from X to Y | iTNC 530, p. 207 |
 | CP | IPA is the whole angle, of many turns in a helix; its sign is that of DR | TNC 430, p. 153 |
+| CP IPA there | as C there; no more than one turn; PA, helices: refused | programs of a CAM |
 | polar angles | from +X towards +Y | TNC 310 Pilot, p. 8 |
 | helices by C | refused: helices are polar only | TNC 430, p. 153 |
 | CC and C in Z and X, or Y and Z | the circle is there, with any tool axis | iTNC 530, p. 222 |
@@ -33,7 +34,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
-| M92, M94, M116, M140, M144 and their like | refused | |
+| M92, M94, M116, M140 MB 5, M144 and their like | refused | |
+| M140 MB MAX | to the end of travel along Z, as a move in the machine: [home.M140] | [K] |
 | M126 | shorter way on axes that show less than 360: from 180 refused, or unknown | 620, p. 566 |
 | M128 | from the start of its block; its F limits other moves | TNC 410, p. 169 |
 | M129 | from the end of its block | TNC 410, p. 169 |
@@ -64,7 +66,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |
-| cycle 207, M3 or M4 before and behind it | a tap in step with the spindle | TNC 320, p. 238 |
+| cycle 207 | a tap in step with the spindle, for which M3 or M4 is said | TNC 320, p. 238 |
+| the spindle behind it | is not certain: to be said before anything cuts | [K] |
 | cycles 201, 203, 240, 220, 221 | as `holes.py` says; several rows, Q301=0: refused | 640, p. 162 |
 | PATTERN DEF POS, CYCL CALL PAT FMAX | the places in their order; from Q203 + Q204 only | 640 |
 | other patterns, CYCL CALL POS, PAT with F | refused | |

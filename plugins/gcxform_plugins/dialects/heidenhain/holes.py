@@ -22,7 +22,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 
-from gcxform_plugins.dialects.heidenhain.moves import around
+from gcxform_plugins.dialects.heidenhain.polar import around
 from gcxform_plugins.dialects.heidenhain.words import written
 
 TURN = 360

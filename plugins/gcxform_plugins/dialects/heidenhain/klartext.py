@@ -11,6 +11,7 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
 from gcxform_plugins.dialects.heidenhain.words import MM, exact, plain, written
 
@@ -150,11 +151,13 @@ class Klartext(Cycles):
 
     def stop(self, items: Sequence[gx.Item]) -> list[str]:
         """STOP: the program waits."""
-        self.spindle = ""
+        self.spindle, self.untold = "", False
         return self._all(self.said(items[1:]), "M0")
 
     def functions(self, items: Sequence[gx.Item]) -> list[str]:
         """M functions in a block of their own."""
+        if retracts(items):
+            return self.retracted(items[0])
         said = self.said(items)
         wrong = said.machine or next(iter(said.axes), None)
         if wrong or said.radius or said.sense:
@@ -235,7 +238,7 @@ class Klartext(Cycles):
         For the same control lengths need not be known.
         """
         self.refuse_beside("TOOL CALL", item)
-        tool, self.spindle = self.tool, ""
+        tool, self.spindle, self.untold = self.tool, "", False
         self.in_spindle = tool
         if self.dialect.m_codes[6].loses_position:
             self.lose()

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
-from math import atan2, ceil, cos, degrees, hypot, nan, radians, sin
+from math import nan
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.positioning import Said, Saying
 from gcxform_plugins.dialects.heidenhain.words import MM, ROTARY, Element, exact, written
 
-TURN = 360.0
 PLANES = {"XY": "G17", "ZX": "G18", "YZ": "G19"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
+ABOUT_POLE = ("C", "CP")
 SIDES = {"RL": "G41", "RR": "G42"}
-LEAST_ANGLE = 1e-4  # degrees, the last decimal of the control: less is neither an arc nor a turn
 
 
-def around(angle: float) -> tuple[float, float]:
-    """Return cosine and sine of an angle (degrees), exact for quarters of a turn."""
-    quarters = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
-    known = quarters.get(angle % TURN)
-    return known or (cos(radians(angle)), sin(radians(angle)))
+END_OF_TRAVEL = "Z = ... in [home.M140] of the machine file says where, in its coordinates"
+
+
+def retracts(items: Sequence[gx.Item]) -> bool:
+    """Whether a block is M140 MB MAX and nothing else."""
+    said = [item.name.split() for item in items]
+    return said == [["M"], ["MB", "MAX"]] and items[0].numbers == ("140",)
 
 
 class Moves(Saying):
@@ -29,6 +30,8 @@ class Moves(Saying):
 
     def straight(self, items: Sequence[gx.Item]) -> list[str]:
         """L: a line to coordinates, or to a place of the machine."""
+        if retracts(items[1:]):
+            return self.retracted(items[1])
         said = self.said(items[1:])
         if said.machine:
             return self._all(said, self._in_machine(said, said.machine))
@@ -111,7 +114,14 @@ class Moves(Saying):
             name = said.side.name
             self.refuse(f"{name} here: the side changes in lines in X and Y, by R0", said.side)
 
+    def check_spindle(self) -> None:
+        """Refuse to cut behind a tap before it is said that the spindle turns, or stands."""
+        if self.untold:
+            message = "behind a tap it is not certain whether the spindle turns"
+            raise self.refusal("GX215", message, None, "write M3, M4 or M5 before")
+
     def _check_feed(self) -> None:
+        self.check_spindle()
         if self.feed_lost:
             message = "behind a cycle it is not certain which feed is in force"
             raise self.refusal("GX204", message, None, "give F in this block")
@@ -156,6 +166,18 @@ class Moves(Saying):
         self.motion = "G0" if said.rapid else "G1"
         return f"G53 {self.motion}{words}{said.feed}"
 
+    def retracted(self, item: gx.Item) -> list[str]:
+        """M140 MB MAX: to the end of travel along the tool axis, where the machine file says it."""
+        place = self.reading.homes.get("M140", {}).get("Z")
+        if place is None or self.reading.stays:
+            self.refuse("M140 leads to where only the machine knows", item, END_OF_TRAVEL)
+        self.refuse_beside("M140", item)
+        if self.following:
+            self.refuse("M140 while the control follows the tip", item, "write M129 before")
+        self.lose("XYZ" if self.turn != 0 or self.mirrored != "" else "Z")
+        self.motion = "G0"
+        return [f"G53 G0 Z{exact(Decimal(repr(place / (MM if self.inch else 1.0))))}"]
+
     def _all(self, said: Said, block: str) -> list[str]:
         """Return a block with those of M functions before and behind it."""
         if said.leaves:
@@ -196,10 +218,15 @@ class Moves(Saying):
         said = self.said(items[1:])
         axes = self._plane_of(items[0])
         ends = self._ends(said, axes)
-        if axes != "XY" and (self.side or self.following or len(ends) < 2):
-            message = "a circle out of XY with one coordinate, beside a contour, or under M128"
-            self.refuse(message, items[0])
+        if axes != "XY" and len(ends) < 2:
+            self.refuse("a circle out of XY with one coordinate", items[0])
+        self._check_plane(axes, items[0])
         return self._all(said, self._arc(said, items[0], ends))
+
+    def _check_plane(self, axes: str, path: gx.Item) -> None:
+        """Refuse a circle out of XY where more hangs on it. Raises InputError."""
+        if axes != "XY" and (self.side or self.following):
+            self.refuse("a circle out of XY beside a contour, or under M128", path)
 
     def _plane_of(self, path: gx.Item) -> str:
         """Return the axes of the plane in which CC and the circle about it are."""
@@ -238,7 +265,7 @@ class Moves(Saying):
         if said.rapid or said.machine or said.radius:
             raise self.refusal("GX213", f"{path.name} with FMAX, M91 or R", path)
         self._check_feed()
-        plane = self._plane_of(path) if path.name == "C" else "XY"
+        plane = self._plane_of(path) if path.name in ABOUT_POLE else "XY"
         start = {axis: self.stands_at(axis, path) for axis in plane}
         by_size = " R" in words or path.name == "CT"
         if not words:
@@ -260,102 +287,6 @@ class Moves(Saying):
     def _pole(self, path: gx.Item) -> dict[str, str]:
         if not self.pole:
             raise self.refusal("GX213", f"{path.name} needs a CC before it", path)
-        if path.name != "C" and "Z" in self.pole:
+        if path.name not in ABOUT_POLE and "Z" in self.pole:
             self.refuse(f"{path.name} about a CC out of XY", path)
         return self.pole
-
-    # --- polar coordinates ---
-
-    def polar_line(self, items: Sequence[gx.Item]) -> list[str]:
-        """LP: a line to polar coordinates about CC."""
-        said, path = self.said(items[1:]), items[0]
-        pole = self._pole(path)
-        given, ends = self._polar_words(said)
-        if said.machine:
-            self.refuse("LP with M91", said.machine)
-        radius = given.get("PR")
-        if radius is None:
-            radius = self._last_polar(path)[0] + given.get("IPR", 0.0)
-        angle = given["PA"] if "PA" in given else self._angle(path) + given.get("IPA", 0.0)
-        ends |= self._at(pole, radius, angle)
-        words = "".join(f" {axis}{number}" for axis, number in ends.items())
-        block = self._straight(said, ends, words)
-        self.polar = radius, angle
-        if given.keys() & {"IPR", "IPA"}:
-            place = written(radius), written(angle)
-            known = self.polar_at.setdefault(self.line, place)
-            self.polar_at[self.line] = place if known == place else None
-        return self._all(said, block)
-
-    def polar_circle(self, items: Sequence[gx.Item]) -> list[str]:
-        """CP: a circle about CC by its angle, with IZ a helix; IPA may be many turns."""
-        said, path = self.said(items[1:]), items[0]
-        pole = self._pole(path)
-        given, ends = self._polar_words(said)
-        if len(given) != 1 or not given.keys() <= {"PA", "IPA"}:
-            raise self.refusal("GX213", "CP takes PA or IPA, and nothing else of the polar", path)
-        x, y = (float(self.stands_at(a, path)) - float(pole[a]) for a in "XY")
-        radius, begin = hypot(x, y), self._angle(path)
-        sense = 1.0 if said.sense == "G3" else -1.0
-        turn = given["IPA"] if "IPA" in given else sense * ((given["PA"] - begin) * sense % TURN)
-        self._check_turn(turn, sense, path, "IPA" in given)
-        turns = ceil(abs(turn) / TURN)
-        words = "".join(
-            f" {letter}{exact(Decimal(pole[axis]) - Decimal(self.place[axis]))}"
-            for axis, letter in (("X", "I"), ("Y", "J"))
-        )
-        if turn % TURN:
-            ends |= self._at(pole, radius, begin + turn)
-        words += f" P{turns}" if turns > 1 else ""
-        block = self._arc(said, path, ends, words)
-        self.polar = radius, begin + turn
-        return self._all(said, block)
-
-    def _check_turn(self, turn: float, sense: float, path: gx.Item, by_turn: bool) -> None:
-        """Refuse turns against DR, and those of which it is not certain how many they are."""
-        if turn * sense < 0:
-            self.refuse("CP turns against its DR", path)
-        rest = abs(turn) % TURN
-        near = min(rest, TURN - rest)
-        if near < LEAST_ANGLE and (near or not turn or not by_turn):
-            self.refuse(f"CP turns by {turn:g} degrees", path)
-
-    def _polar_words(self, said: Said) -> tuple[dict[str, float], dict[str, str]]:
-        """Return PR and PA and their like, and the end along Z."""
-        names = [item.name.removeprefix("I") for item in said.axes]
-        if len({*names}) < len(names):
-            raise self.refusal("GX203", "a coordinate stands here twice", said.axes[0])
-        given: dict[str, float] = {}
-        ends: dict[str, str] = {}
-        for item in said.axes:
-            if "P" in item.name:
-                given[item.name] = float(self.number_of(item))
-                continue
-            axis, number = self.reached(item)
-            if axis != "Z":
-                self.refuse(f"{item.name} beside polar coordinates", item)
-            ends[axis] = number
-        return given, ends
-
-    def _last_polar(self, path: gx.Item) -> tuple[float, float]:
-        if self.polar is None:
-            raise self.refusal("GX213", f"{path.name} without PR behind other moves", path)
-        return self.polar
-
-    def _angle(self, path: gx.Item) -> float:
-        """Return the polar angle of where the axes stand."""
-        if self.polar is not None:
-            return self.polar[1]
-        pole = self._pole(path)
-        x, y = (float(self.stands_at(a, path) - Decimal(pole[a])) for a in "XY")
-        if not (x or y):
-            raise self.refusal("GX213", "the axes stand at the pole, which has no angle", path)
-        return degrees(atan2(y, x))
-
-    def _at(self, pole: dict[str, str], radius: float, angle: float) -> dict[str, str]:
-        """Return X and Y of polar coordinates."""
-        away = around(angle)
-        return {
-            axis: written(float(pole[axis]) + radius * part)
-            for axis, part in zip("XY", away, strict=True)
-        }

@@ -15,6 +15,7 @@ ENDS = (2, 30)
 CALLS = 99
 TURNS = {3: "M3", 13: "M3", 4: "M4", 14: "M4"}
 LEAVES_SPINDLE = frozenset({1, 7, 8, 9, 91, 99, 126, 127, 128, 129})
+TELLS_SPINDLE = frozenset({0, 2, 3, 4, 5, 6, 13, 14, 30})
 LONGEST_M = 4  # digits
 MACHINE = 91
 NEVER_BESIDE = (6, 91, 128, 129)
@@ -140,6 +141,7 @@ class Saying(Words):
             raise self.refusal("GX101", f"M{text} is no M function", item)
         code = int(text)
         self.spindle = self.spindle if code in LEAVES_SPINDLE else TURNS.get(code, "")
+        self.untold &= code not in TELLS_SPINDLE
         if code in NEVER_BESIDE:
             self.refuse_beside(f"M{code}", item)
         if code == MACHINE:

@@ -54,7 +54,8 @@ STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
-    *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas", "refers", "spindle"),
+    *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas", "refers"),
+    *("spindle", "untold"),
 )
 BEGUN = STATE.index("begun")
 state_of = attrgetter(*STATE)

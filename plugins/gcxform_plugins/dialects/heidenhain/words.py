@@ -62,6 +62,7 @@ class Words(gx.Translator):
     counts_from  the preset that cycle 247 has named, None before
     side      G41 or G42 where RL or RR is in force
     spindle   M3 or M4, as it turns; nothing where it stands, or that is not known
+    untold    whether it turns has not been said since a tap
     plane     G17, G18 or G19, as blocks have it
     deltas    DL and DR of the tool in the spindle, as TOOL CALL has said
     turn      degrees by which X and Y are turned;  mirrored: the axes that are; None: not known
@@ -92,6 +93,7 @@ class Words(gx.Translator):
         self.following = False
         self.shortest = False
         self.side = self.spindle = ""
+        self.untold = False
         self.deltas: dict[str, Decimal] = {}
         self.turn: Decimal | None = Decimal(0)
         self.mirrored: str | None = ""
