@@ -24,6 +24,7 @@ from test_heidenhain import Writer as Klartext
 
 import gcxform as gx
 from gcxform.flow.speller import Speller
+from gcxform.flow.tool_names import ToolNames
 from gcxform.modal.state import Reading
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.source import Source
@@ -137,6 +138,14 @@ def test_m_functions_of_klartext_go_along(code: int, tmp_path: Path) -> None:
     assert moves[0] < said[0] < moves[1]
     assert len(said) == 2
     assert said[1] in (moves[2] - 1, moves[2] + 1)
+
+
+def test_tools_that_are_made_up_are_several() -> None:
+    names = ToolNames(Reading(tools=TOOLS, asides=True))
+    numbers = [names.number(name) for name in ("a", "b", "a", "A")]
+    assert len({*numbers}) == 3
+    assert numbers[0] == numbers[2]
+    assert not {*map(int, numbers)} & {*TOOLS}
 
 
 def test_what_goes_along_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,6 +13,8 @@ BLANKS = str.maketrans("", "", " \t")
 ASIDE = "\x01"
 """What a comment begins with that is none, but goes along as it was programmed, to a speller that
 hears `asides`: a translator of the same language says them, and takes the sign out of comments."""
+NAMED = "\x04"
+"""What an aside begins with that is the name of the tool which T of its block is."""
 HIDDEN, SHOWN = str.maketrans("()", "\x02\x03"), str.maketrans("\x02\x03", "()")
 
 
@@ -29,12 +31,14 @@ class Speller(ABC):
 
     Whatever comes out is read again by the grammar of the language, and has to be the same program.
 
-    `inert` are M codes that leave the axes where they stand. `asides`: what goes along as it was
+    `inert` are M codes that leave the axes where they stand; `tool_name` is that of the T in the
+    block that was heard last, if its program called it so. `asides`: what goes along as it was
     programmed stands in comments, which nobody else than a translator can have written.
     """
 
     inert: frozenset[str] = frozenset()
     asides: bool = False
+    tool_name: str = ""
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name
@@ -60,6 +64,8 @@ class Speller(ABC):
         if not self.asides:
             return [], comments, words
         asides = [each[1:].translate(SHOWN) for each in comments if each.startswith(ASIDE)]
+        self.tool_name = next((each[1:] for each in asides if each.startswith(NAMED)), "")
+        asides = [each for each in asides if not each.startswith(NAMED)]
         return asides, [each for each in comments if not each.startswith(ASIDE)], words
 
     @abstractmethod

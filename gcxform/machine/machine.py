@@ -62,6 +62,7 @@ class Tool(msgspec.Struct, frozen=True, forbid_unknown_fields=True, rename="keba
     ] = NOT_SAID
     x: Annotated[Length, says("offset of the tip in X, mm")] = 0.0
     y: Annotated[Length, says("offset of the tip in Y, mm")] = 0.0
+    name: Annotated[str, says("what it is called where programs call tools by their names")] = ""
 
     @property
     def vector(self) -> tuple[float, float, float]:

@@ -122,6 +122,27 @@ MUTATIONS = (
         f"{COMPENSATED}-rounds-a-corner]",
     ),
     Mutation(
+        "languages: a tool is called by a number that was made up",
+        "gcxform/flow/speller.py",
+        'self.tool_name = next((each[1:] for each in asides if each.startswith(NAMED)), "")',
+        'self.tool_name = ""',
+        f"{COMPENSATED}-by-name]",
+    ),
+    Mutation(
+        "languages: a tool whose number nobody knows is any for another control",
+        "gcxform/flow/tool_names.py",
+        "if known or not self.reading.asides:",
+        "if known:",
+        f"{CASE}tool-by-name-open]",
+    ),
+    Mutation(
+        "languages: two tools whose names alone are known are one",
+        "gcxform/flow/tool_names.py",
+        "MADE_UP + len(self._made_up)",
+        "MADE_UP",
+        "tests/test_languages_compensated.py::test_tools_that_are_made_up_are_several",
+    ),
+    Mutation(
         "languages: what goes along is not compared",
         SPELLED,
         "if reading.asides and ASIDES",

@@ -11,6 +11,8 @@ import re
 from collections.abc import Container, Iterator
 from pathlib import Path
 
+from msgspec.structs import replace
+
 import gcxform as gx
 from gcxform.vocabulary import Tool, control_lines
 
@@ -81,4 +83,4 @@ def _tool(words: list[str], unit: float) -> tuple[int, Tool]:
     numbers = {word[0].upper(): float(word[1:]) for word in words}
     scale = {"D": unit / 2}
     values = {KEPT[a]: v * scale.get(a, unit) for a, v in numbers.items() if a in KEPT}
-    return int(numbers["T"]), Tool(**{"length": 0.0, "radius": 0.0, **values})
+    return int(numbers["T"]), replace(Tool(length=0.0, radius=0.0), **values)

@@ -44,6 +44,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M128, M129, TCPM, to the same control | stay, and so does all behind AXIS SPAT or VECTOR | |
 | PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
 | TOOL CALL | tool, length, S, F; without number S and F only | [K] |
+| TOOL CALL "NAME" | the tool that the machine file calls so; to a TNC any goes along | |
 | its DL, DR | added to length and radius, which must be known; DR2: refused | iTNC 530, p. 183 |
 | TOOL DEF | no move; must not contradict the machine file; a number alone is T | iTNC 530, p. 183 |
 | tool 0 | has no length | 640, p. 170 |

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-CALLED = re.compile(r"TOOL CALL [0-9]+ Z")
+CALLED = re.compile(r'TOOL CALL (?:[0-9]+|"[^"]*") Z')
 SPEED = "TOOL CALL Z"
 
 

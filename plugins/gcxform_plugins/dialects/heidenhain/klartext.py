@@ -18,6 +18,7 @@ from gcxform_plugins.dialects.heidenhain.words import MM, exact, plain, written
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
 TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
+FETCHED = re.compile(r'TOOL\s+DEF\s*"([^"]*)"\s*$', re.IGNORECASE)
 FIRST_WORD = re.compile(r"TOOL|[A-Z]+")
 TCPM = "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"
 RESET = "FUNCTION RESET TCPM"
@@ -37,7 +38,7 @@ class Klartext(Cycles):
     def __init__(self, *program: Any) -> None:
         super().__init__(*program)
         self.begun = False
-        self.axis = ""
+        self.axis = self.tool_name = ""
         self.tool = ""
         self.statements: dict[str, Callable[[Sequence[gx.Item]], list[str]]] = {
             "L": self.straight,
@@ -173,7 +174,7 @@ class Klartext(Cycles):
             self.refuse(
                 "TOOL CALL while the control follows the tip", items[0], "write M129 before"
             )
-        self.tool, self.tool_feed = "", ""
+        self.tool, self.tool_name, self.tool_feed = "", "", ""
         words = "".join(self._tool_word(item) for item in items[1:] if item.kind != "delta")
         deltas = self._deltas([item for item in items if item.kind == "delta"])
         if not self.tool and (deltas or self.deltas):
@@ -189,8 +190,6 @@ class Klartext(Cycles):
     def _tool_word(self, item: gx.Item) -> str:
         """Take a word of TOOL CALL, and return what it is in the block behind the tool change."""
         kind = item.kind
-        if item.name.startswith('"'):
-            self.refuse("a tool by its name", item)
         if kind == "number" and self.tool:
             raise self.refusal("GX203", "a tool stands here twice", item)
         if kind == "number":
@@ -227,10 +226,20 @@ class Klartext(Cycles):
         return f"G43.1 Z{written(Decimal(repr(known.length / unit)) + self.deltas['DL'])}"
 
     def _tool_number(self, item: gx.Item) -> str:
+        if item.name.startswith('"'):
+            self.tool_name = self.lines[self.line][slice(*item.place)].strip('"')
+            return self._number_of(self.tool_name, item)
         text = self.number_of(item)
         if not text.isdigit() or len(text) > LONGEST_TOOL:
             self.refuse(f"a tool with the number {text}", item)
         return str(int(text))
+
+    def _number_of(self, name: str, item: gx.Item) -> str:
+        """Return the number of a tool that is called by its name. Raises InputError."""
+        try:
+            return self.tool_names.number(name)
+        except gx.UnspeakableError as why:
+            self.refuse(str(why), item, why.hint)
 
     def _changed(self, item: gx.Item) -> list[str]:
         """Return the blocks of a tool change; tool 0 has no length.
@@ -244,7 +253,8 @@ class Klartext(Cycles):
             self.lose()
         if self.reading.stays:
             return [f"T{tool} M6"]
-        return [f"T{tool} M6", self._length(item, tool)]
+        beside = self.tool_names.beside(self.tool_name)
+        return [f"T{tool} M6{beside}", self._length(item, tool)]
 
     def _tool_def(self, item: gx.Item) -> list[str]:
         """TOOL DEF: prepares a tool; what it says of it must be what the machine file says.
@@ -252,6 +262,9 @@ class Klartext(Cycles):
         With a number alone it is fetched for the next change.
         """
         match = TOOL.fullmatch(item.name)
+        named = FETCHED.search(self.lines[self.line].partition(";")[0])
+        if named is not None and not self.reading.stays:
+            return [f"T{self._number_of(named[1], item)}{self.tool_names.beside(named[1])}"]
         if match is None and self.reading.stays:
             return []
         if match is None:

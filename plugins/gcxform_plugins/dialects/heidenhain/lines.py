@@ -40,7 +40,7 @@ class Lines(gx.Speller):
 
     place   where the axes stand, in numbers of the program; an axis that is not here is lost
     rounded by how much axes stand beside their words: a helix is said by an angle
-    steps   G91 is in force;  tool: that of the last T word
+    steps   G91 is in force;  tool: that of the last T word;  called: what that calls it
     side    that of the last line;  waits: what was said since, for the next line in X and Y
     """
 
@@ -51,7 +51,7 @@ class Lines(gx.Speller):
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
         self.steps = self.over = self.bounded = False
-        self.tool = self.in_spindle = self.speed = self.spindle = ""
+        self.tool = self.called = self.in_spindle = self.speed = self.spindle = ""
         self.side = self.waits = " R0"
         self.turns, self.shift = Decimal(0), dict.fromkeys(LINEAR, Decimal(0))
 
@@ -151,12 +151,14 @@ class Lines(gx.Speller):
     def _tools(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
         """Yield TOOL CALL for T, M6 and S, TOOL DEF for a T that is fetched for the next change."""
         fetched = "T" in values and "M6" not in codes
-        self.tool = _plain(values.pop("T")) if "T" in values else self.tool
+        if "T" in values:
+            self.tool = _plain(values.pop("T"))
+            self.called = f'"{self.tool_name}"' if self.tool_name else self.tool
         number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
         if "M6" in codes and not self.tool:
             raise gx.UnspeakableError("M6, and which tool it takes no T has said")
         if "M6" in codes:
-            number, self.in_spindle = f" {self.tool}", self.tool
+            number, self.in_spindle = f" {self.called}", self.tool
             if "M6" not in self.inert:
                 self.lose()
         if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:
@@ -164,7 +166,7 @@ class Lines(gx.Speller):
         if number or speed:
             yield f"TOOL CALL{number} Z{speed}"
         if fetched:
-            yield f"TOOL DEF {self.tool}"
+            yield f"TOOL DEF {self.called}"
 
     def _ends(self, code: str) -> Iterator[str]:
         if code in ("M2", "M30"):

@@ -98,6 +98,7 @@ class Words(gx.Translator):
         self.turn: Decimal | None = Decimal(0)
         self.mirrored: str | None = ""
         self.in_spindle = ""
+        self.tool_names = gx.ToolNames(self.reading)
         self.over = self.computes = False
         self.q: dict[str, float | None] = {
             f"Q{number}": value

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
+from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
@@ -45,6 +46,11 @@ class Blocks(Contours):
         rb"(?:A?(?:TRANS|ROT|SCALE|MIRROR)\b|(?:_[A-Z0-9_]+|[A-Z]{2}[A-Z0-9_]*)[ \t]*\()",
         re.IGNORECASE | re.MULTILINE,
     )
+
+    def __init__(self, *program: Any) -> None:
+        super().__init__(*program)
+        self.read = {**self.read, "tool_name": self._tool_name}
+        self.tool_names = gx.ToolNames(self.reading)
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line, the first with its number. Raises InputError."""
@@ -205,6 +211,21 @@ class Blocks(Contours):
             self.speed = number
         super()._other(line, item, letter, number)
 
+    def _tool_name(self, line: Line, item: gx.Item) -> None:
+        """T="NAME": the tool that the machine file calls so. Raises InputError."""
+        if item.names[0] != "T" or line.tool:
+            self.refuse(
+                f"{item.names[0]} by a name, or a second tool", item, "write T and a number"
+            )
+        name = self.lines[self.line][slice(*item.place)].split('"')[1]
+        try:
+            line.tool, line.tool_name = self.tool_names.number(name), name
+        except gx.UnspeakableError as why:
+            self.refuse(str(why), item, why.hint)
+
+    def _by_name(self, line: Line) -> str:
+        return self.tool_names.beside(line.tool_name) if line.tool_name else ""
+
     def _tooled(self, line: Line) -> Iterator[str]:
         """Yield the blocks of T, M6 and D, in this order."""
         if line.tool:
@@ -215,7 +236,7 @@ class Blocks(Contours):
             if line.axes or self.following:
                 message = "M6 beside a move, or while TRAORI is in force"
                 self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
-            yield f"T{line.tool} M6" if line.tool else "M6"
+            yield f"T{line.tool} M6{self._by_name(line)}" if line.tool else "M6"
             self.tool, self.changed, self.edge, self.along = self.waiting, True, None, None
             moves = self.dialect.m_codes[CHANGE].loses_position
             if moves and CHANGE not in self.reading.inert_m:
@@ -224,7 +245,7 @@ class Blocks(Contours):
             if line.edge is None and setting in (0, 1):
                 yield from self._with_edge(str(int(setting)), line.changes)
         elif line.tool:
-            yield f"T{line.tool}"
+            yield f"T{line.tool}{self._by_name(line)}"
         if line.edge is not None:
             if line.edge_number not in ("0", "1"):
                 message = f"D{line.edge_number} is another cutting edge, of unknown length"

@@ -55,7 +55,7 @@ kept as it stands, with all that is lost behind it.
 | Z between M6 and D | refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
 | those of X and Y | read, in G17: length 1 is along Z; steps behind D as well | W1 13 |
 | T without M6 | MD22550: refused, but for `[control] tool-change-by` = T or M6 | W1 33 |
-| `T="NAME"` | refused | |
+| `T="NAME"` | the tool that the machine file calls so; to the same control any goes along | |
 | G41, G42 | the radius of the tool of D1; settings decide how contours are met | W1 13 |
 | `TRAORI`, `TRAORI(1)`, `TRAFOOF` | X Y Z are those of the tip; the work offset stays | TR 172 |
 | other transformations, other arguments | refused | |

@@ -45,6 +45,7 @@ class Line:
     others: list[str] = field(default_factory=list)
     asides: list[str] = field(default_factory=list)
     tool: str = ""
+    tool_name: str = ""
     changes: gx.Item | None = None
     edge: gx.Item | None = None
     edge_number: str = ""

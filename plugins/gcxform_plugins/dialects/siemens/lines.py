@@ -173,9 +173,9 @@ class Lines(gx.Speller):
             if not self.tool:
                 raise gx.UnspeakableError("M6, and which tool it takes is not said before")
             self.in_spindle, self.waits = self.tool, bool(self.length)
-            yield f"{number}T{self.tool} M6" if "T" in values else f"{number}M6"
+            yield f"{number}{self._tool_word} M6" if "T" in values else f"{number}M6"
         elif "T" in values:
-            yield f"{number}T{self.tool}"
+            yield f"{number}{self._tool_word}"
         if "G43" in names:
             self.length = text_of(Decimal(values["H"])) if "H" in values else self.in_spindle
         elif "G49" in names:
@@ -185,6 +185,10 @@ class Lines(gx.Speller):
         counts = "Z" in values or not {"G41", "G42"}.isdisjoint(names)
         if (self.waits and counts) or not {"G43", "G49"}.isdisjoint(names):
             yield self._edge
+
+    @property
+    def _tool_word(self) -> str:
+        return f'T="{self.tool_name}"' if self.tool_name else f"T{self.tool}"
 
     @property
     def _edge(self) -> str:

@@ -357,7 +357,7 @@ class Programs(Scaling):
             yield from super()._tooled(line)
             return
         if line.tool:
-            yield f"T{line.tool}"
+            yield f"T{line.tool}{self._by_name(line)}"
         if line.changes is not None:
             if line.axes:
                 self.refuse("M6 beside a move", line.changes, "give M6 its own line")

@@ -105,12 +105,11 @@ class Statements(gx.Translator):
         """Refuse what is only taken to be refused. Raises InputError."""
         what = {
             "flow": f"{item.name.split()[0].split('(')[0]} decides what is executed, or defines it",
-            "tool_name": "a tool by its name: which number it has is not known",
             "array": "a variable is not computed",
             "system": "a variable of the control is not known",
             "expression": "an expression is not computed",
         }
-        self.refuse(what[item.kind], item, "write T and a number" if "name" in item.kind else PLAIN)
+        self.refuse(what[item.kind], item, PLAIN)
 
     # --- words ---
 
