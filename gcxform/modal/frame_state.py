@@ -175,9 +175,10 @@ class FrameState:
     def with_tool(self, vector: tuple[float, float, float], name: str) -> FrameState:
         """Return the state with another tool vector; `name` says whose it is.
 
-        What is not known is one and the same nan, so that frames of the same tool are equal.
+        What is not known is one and the same nan, and nothing is 0 and not -0, so that frames of
+        the same tool are the same to the bit: `made` takes one for the other.
         """
-        x, y, z = (length if length == length else nan for length in vector)
+        x, y, z = (length + 0.0 if length == length else nan for length in vector)
         return replace(self, tool=(x, y, z), tool_name=name)
 
     def frame(self) -> Frame:

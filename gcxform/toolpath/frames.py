@@ -68,6 +68,11 @@ class Frame:
         """Whether words are positions."""
         return self.shifts_only and not any(self.shift)
 
+    @cached_property
+    def added(self) -> Vector:
+        """What is added to words where `shifts_only`: -0.0 leaves every bit of one as it is."""
+        return (-0.0,) * len(self.shift) if self.plain else self.shift
+
     def positions(self, words: Floats) -> Floats:
         """Return the positions (n, axes) of words (n, axes)."""
         return self.placed(_scaled(words, 0.5) if self.diameter else words)

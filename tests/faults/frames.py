@@ -5,6 +5,9 @@ from __future__ import annotations
 from faults.mutation import CORPUS, FACTS, FOUND, OFFSETS, SHIFTS, Mutation
 
 ROADS = "tests/properties/test_roads.py::test_a_frame_that_is_kept_is_the_one_that_would_be_made"
+RUNS = "tests/properties/test_roads.py::test_short_stretches_are_read_alike"
+ENDING = "tests/properties/test_roads.py::test_a_run_of_stretches_ends_where_more_counts_than_words"
+RUN = "gcxform/modal/moves/passages.py"
 
 MUTATIONS = (
     Mutation(
@@ -282,9 +285,9 @@ MUTATIONS = (
     ),
     Mutation(
         "frames: a length that shifts zero moves Z too",
-        "gcxform/modal/frames/track.py",
-        'length_may_move or step == "shifts":',
-        "length_may_move:",
+        "gcxform/modal/frames/tool_lengths.py",
+        'length_may_move and reading.control.get(LENGTH_STEP) != "shifts"',
+        "length_may_move",
         "tests/test_corpus.py::test_case[dialects/haas/length-alone-shifts]",
     ),
     Mutation(
@@ -297,9 +300,51 @@ MUTATIONS = (
     Mutation(
         "frames: a length that moves Z shifts zero",
         "gcxform/modal/frames/track.py",
-        'return word if step == "moves" else np.nan',
+        'return word if self.lines.reading.control.get(LENGTH_STEP) == "moves" else np.nan',
         "return np.nan",
         "tests/test_corpus.py::test_case[dialects/fanuc/length-alone-moves]",
+    ),
+    Mutation(
+        "frames: a step is read in a run as a place",
+        RUN,
+        "self.track.worded & (modes.incremental | (modes.extruded == 1))",
+        "self.track.worded & False",
+        ENDING,
+    ),
+    Mutation(
+        "frames: a run goes home under cover of a frame that counts from elsewhere",
+        RUN,
+        "if {*track.frame.origin} == {frames.first} else None",
+        "",
+        ENDING,
+    ),
+    Mutation(
+        "frames: a run goes on in a frame that does more than shift",
+        RUN,
+        "not f.shifts_only or f.polar or",
+        "",
+        ENDING,
+    ),
+    Mutation(
+        "frames: a run goes on where zero is not known",
+        RUN,
+        "or f.origin != before.origin",
+        "",
+        ENDING,
+    ),
+    Mutation(
+        "frames: a run goes home from where it began",
+        RUN,
+        "before = np.append(entry[k], after[:, k])[home]",
+        "before = np.full(len(home), entry[k])",
+        RUNS,
+    ),
+    Mutation(
+        "frames: a length by its value after one by its number is like any other in a run",
+        RUN,
+        "name_by_value(base.tool_name) if valued",
+        '"G43.1" if valued',
+        RUNS,
     ),
     Mutation(
         "frames: nobody says which zeros are not left in the control",

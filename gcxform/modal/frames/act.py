@@ -56,8 +56,13 @@ class Asked(NamedTuple):
     @property
     def numbers(self) -> str:
         """The letters, besides axes, of the words that the code takes: with these it says which."""
-        code = self.dialect.codes.get(self.code)
-        return "".join(a for a in (code.takes if code else "") if a not in self.dialect.axes)
+        return letters_of(self.dialect, self.code)
+
+
+def letters_of(dialect: type[Dialect], name: str) -> str:
+    """Return the letters, besides axes, of the words that a code takes."""
+    code = dialect.codes.get(name)
+    return "".join(a for a in (code.takes if code else "") if a not in dialect.axes)
 
 
 Act = Callable[[FrameState, Asked], FrameState]

@@ -48,7 +48,7 @@ class Shifted:
         track = self.track
         position = track.state.position.copy()
         entry = position.tolist()
-        shift = track.frame.shift
+        shift = track.frame.added
         for k, value, until in self.words:
             place = until[last - 1]
             if place >= first:
@@ -75,7 +75,7 @@ class Shifted:
 
     def _ends(self, line: Ints, stretch: Ints, firsts: Ints) -> Floats:
         """Return where moves end: at the last word of their stretch, or where that began."""
-        shifts = np.array([self.track.frames[number].shift for number in self._frames])
+        shifts = np.array([self.track.frames[number].added for number in self._frames])
         entries = np.array(self._entries)
         ends = column_major(len(line), len(self.track.axes))
         first = firsts[stretch]
@@ -83,8 +83,6 @@ class Shifted:
             ends[:, k] = entries[stretch, k]
         for k, value, until in self.words:
             place = until[line]
-            named = value[place]
-            if shifts[:, k].any():
-                named = named + shifts[stretch, k]
+            named = value[place] + shifts[stretch, k]
             ends[:, k] = np.where(place >= first, named, ends[:, k])
         return ends

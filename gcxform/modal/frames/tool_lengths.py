@@ -7,16 +7,28 @@ from math import isnan
 import numpy as np
 
 from gcxform.catalogue.remedies import tool_said
+from gcxform.dialect.dialect import Dialect
 from gcxform.modal.frame_state import BY_VALUE, INSTEAD, NO_TOOL, FrameState, replace
 from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.state import Reading
 
 BEFORE = "the H before the program"
+LENGTH_STEP = "tool-length-alone"  # what another tool length does to Z before Z is programmed
+
+
+def length_moves(dialect: type[Dialect], reading: Reading) -> bool:
+    """Whether another tool length may move the axes by itself."""
+    return dialect.tool_rule.length_may_move and reading.control.get(LENGTH_STEP) != "shifts"
 
 
 def change_tool(state: FrameState, asked: Asked) -> FrameState:
     """M6: the tool that T has named is in the spindle."""
-    tool = -1 if isnan(asked.tool_word) else int(asked.tool_word)
-    return replace(state, in_spindle=tool, changes=state.changes + 1)
+    return replace(state, in_spindle=in_spindle(asked.tool_word), changes=state.changes + 1)
+
+
+def in_spindle(word: float) -> int:
+    """Return the number of the tool that a T has named, -1 where none is known."""
+    return -1 if isnan(word) else int(word)
 
 
 def user_code(state: FrameState, asked: Asked) -> FrameState:
@@ -197,8 +209,12 @@ def length_vector(state: FrameState, asked: Asked) -> FrameState:
             raise ActError("GX213", f"{asked.code} takes no {axis} on this control")
         vector[asked.column(state, axis)] = value
     x, y, z = vector
-    alone = state.tool_name in ("", BY_VALUE)
-    return state.with_tool((x, y, z), BY_VALUE if alone else INSTEAD)
+    return state.with_tool((x, y, z), name_by_value(state.tool_name))
+
+
+def name_by_value(before: str) -> str:
+    """Return the name of a tool vector that the program gives, by that of the one before it."""
+    return BY_VALUE if before in ("", BY_VALUE) else INSTEAD
 
 
 def offset_of_tool(state: FrameState, asked: Asked) -> FrameState:

@@ -22,6 +22,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, unheard
+from gcxform.modal.frames.tool_lengths import LENGTH_STEP, length_moves
 from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.line_notes import WayHome
 from gcxform.modal.lines import LENGTHS, Lines
@@ -37,7 +38,6 @@ from gcxform.values import dataclass
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
-LENGTH_STEP = "tool-length-alone"  # what another tool length does to Z before Z is programmed
 UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
 SPATIAL = 0b111  # X, Y and Z as bits
 PLANES = tuple(Plane)
@@ -162,12 +162,11 @@ class Track:
 
         The word is nan where it does not. `old` is the frame with the length before.
         """
-        step = self.lines.reading.control.get(LENGTH_STEP)
-        if not self.dialect.tool_rule.length_may_move or step == "shifts":
+        if not length_moves(self.dialect, self.lines.reading):
             return np.nan
         word = old.words_of(self.state.position.tolist())[2]
         self._lose(line, 4)
-        return word if step == "moves" else np.nan
+        return word if self.lines.reading.control.get(LENGTH_STEP) == "moves" else np.nan
 
     def _stand(self, k: int, word: float) -> None:
         """Let an axis stand where a word of the frame in force leads, if that is known."""

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.dialect.dialect import Dialect
+from gcxform.dialect.dialect import INCH, ROTARY, Dialect
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.findings import Findings
+from gcxform.modal.frames.track import Track
 from gcxform.modal.lines import Lines
+from gcxform.modal.moves.blind_moves import ways
 from gcxform.modal.moves.tilted_arcs import with_legs
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import SAME_POINT, TURN, swept
@@ -42,6 +44,31 @@ class ArcWords:
     absolute: Flags
     inch: Flags
     way: Floats
+
+
+def words_of_arcs(track: Track, lines: Ints) -> ArcWords:
+    """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
+    scale = np.where(track.modes.inch[lines], INCH, 1.0)
+    arcs = np.zeros(track.lines.live, np.bool_)
+    arcs[lines] = True
+
+    def column(address: str) -> Floats:
+        word = track.lines.word(address, arcs) if address else None
+        if word is None:
+            return np.full(len(lines), np.nan)
+        return np.where(word[1][lines], word[0][lines], np.nan)
+
+    return ArcWords(
+        lines,
+        np.stack([column(a) * scale for a in "IJK"], axis=1),
+        column("R") * scale,
+        column(track.dialect.arc_rule.turns),
+        np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
+        np.any([~np.isnan(column(a)) for a in ROTARY], axis=0),
+        track.modes.absolute_centre[lines],
+        track.modes.inch[lines],
+        ways(track, lines),
+    )
 
 
 def resolve_arcs(path: Toolpath, words: ArcWords, lines: Lines) -> Toolpath:

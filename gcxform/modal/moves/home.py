@@ -80,7 +80,9 @@ def _home(track: Track, line: int, code: str) -> Own:
     if words:
         note_way(track, line)
         moves.append((Kind.RAPID, _reached(track, line, words)))
-        _warn_of_plunge(track, line, code, moves[0][1][2])
+        if not track.modes.incremental[line]:
+            stands = float(track.state.position[2])
+            warn_of_plunge(track, line, code, stands, moves[0][1][2])
     elif not track.dialect.motion_rule.g28_without_axes:
         track.findings.add(
             line,
@@ -150,10 +152,9 @@ def _let_go_of_length(track: Track, line: int, code: str) -> None:
         track.enter(line + 1, track.frame)
 
 
-def _warn_of_plunge(track: Track, line: int, code: str, by_way: float) -> None:
+def warn_of_plunge(track: Track, line: int, code: str, stands: float, by_way: float) -> None:
     """Note a way home that leads down first: `G90 G28 Z0` goes to Z0 of the part, then home."""
-    stands = float(track.state.position[2])
-    if track.modes.incremental[line] or not by_way < stands:
+    if not by_way < stands:
         return
     message = f"{code} under G90 goes by way of the point it names: down by {stands - by_way:g} mm"
     where = track.findings.location(line, 1, 1)
@@ -179,7 +180,7 @@ def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, f
 
 
 def _reached(track: Track, line: int, words: dict[str, float]) -> list[float]:
-    """Return the position that the words of a line lead to."""
+    """Return the position that the words of a line lead to; axes without one stay, to the bit."""
     place = list(track.frame.words_of(track.state.position.tolist()))
     steps = bool(track.modes.incremental[line])
     for axis, value in words.items():
@@ -188,7 +189,11 @@ def _reached(track: Track, line: int, words: dict[str, float]) -> list[float]:
             message = f"{axis} is incremental, but where {axis} stands is not known"
             track.findings.add(line, "GX207", message, axis, f"begin with an absolute {axis}")
         place[k] = place[k] + value if steps else value
-    return track.frame.point(place)
+    found = track.frame.point(place)
+    if not track.frame.shifts_only:
+        return found
+    stands = track.state.position.tolist()
+    return [found[k] if axis in words else stands[k] for k, axis in enumerate(track.axes)]
 
 
 def _in_frame(track: Track, k: int, value: float) -> float:
@@ -235,6 +240,11 @@ def _target(track: Track, line: int) -> dict[str, float]:
     return found
 
 
+def is_rapid(track: Track) -> bool:
+    """Whether G53 moves in rapid whatever is in force, so that it may not stand under G1."""
+    return track.dialect.motion_rule.g53_is_rapid and not track.lines.reading.same_words
+
+
 def _in_machine(track: Track, line: int) -> Own:
     """G53: to a point in the coordinates of the machine, without any offset."""
     kind, words = int(track.modes.motion[line]), track.words_on(line)
@@ -246,8 +256,7 @@ def _in_machine(track: Track, line: int) -> Own:
     if track.modes.incremental[line] and track.dialect.motion_rule.g53_in_g91 != "absolute":
         message = "G53 under G91: controls refuse it, ignore it, or take it as absolute"
         track.findings.add(line, "GX213", message, hint=PLACE)
-    rapid = track.dialect.motion_rule.g53_is_rapid and not track.lines.reading.same_words
-    if kind == Kind.LINE and rapid:
+    if kind == Kind.LINE and is_rapid(track):
         message = "G53 under G1: this control moves in rapid whatever is in force"
         track.findings.add(line, "GX213", message, hint=RAPID)
     end = track.state.position.tolist()

@@ -12,20 +12,20 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH, ROTARY
 from gcxform.modal.events import events_of
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.shifted import Shifted
 from gcxform.modal.frames.track import Track
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import MANY_WORK, NUMBER, of_splines
-from gcxform.modal.moves.arcs import ArcWords, resolve_arcs
-from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind, ways
+from gcxform.modal.moves.arcs import resolve_arcs, words_of_arcs
+from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.open_centres import refuse_open_centres
+from gcxform.modal.moves.passages import Passages
 from gcxform.modal.moves.printers import SAY_MOTION, UNMOVED, refuse_unheard
 from gcxform.modal.moves.rows import Own, Rows, Stretches
 from gcxform.modal.moves.spindle_and_probe import Tied
@@ -53,6 +53,7 @@ class Moves:
         self.drilling = Drilling(self.track)
         self.tied = Tied(self.track)
         self.shifted: Shifted | None = None
+        self.passages: Passages | None = None
         self.side, self.radius = compensation(lines, modes)
         vectors = self.dialect.tip_rule.takes_vectors
         self.pointing = Pointing(lines, modes, axes) if vectors else None
@@ -75,8 +76,11 @@ class Moves:
         of = self._stretches(moving, lost)
         if len(of.borders) > 1 and not (lost.any() or of.lost or self.lines.kept_calls):
             self.shifted = Shifted(self.track, moving)
+            if not self._new_units:
+                self.passages = Passages(self.drilling, of, moving)
         losing = lost if lost.any() else None
-        found = [self._stretch(first, last, of, moving, losing) for first, last in of.borders]
+        alone = of.borders if self.passages is None else self.passages.over()
+        found = [self._stretch(first, last, of, moving, losing) for first, last in alone]
         if self.lines.live in of.leaving:
             self.track.lose_all(self.lines.live)
         rows = [part for part in found if isinstance(part, Rows) and len(part.line)]
@@ -84,6 +88,8 @@ class Moves:
             rows.append(Rows.of_lines(own))
         if self.shifted is not None:
             rows.append(self._plain(*self.shifted.rows()))
+        if self.passages is not None:
+            rows += [self._plain(*each) for each in self.passages.plain] + self.passages.own
         rows += self.drilling.rows()
         return self._path(Rows.joined(rows or [self._nothing()], len(self.axes)))
 
@@ -293,7 +299,7 @@ class Moves:
         if len(line) and (self.state.pull or self.bends):
             path = read_splines(path, self.lines, self.modes)
         if path.has_arcs:
-            words = self._arc_words(line[path.is_arc])
+            words = words_of_arcs(self.track, line[path.is_arc])
             path = resolve_arcs(path, words, self.lines)
         return self.nurbs.as_beziers(path)
 
@@ -374,27 +380,3 @@ class Moves:
             feed = np.where(plain, feed, feed * unit)
         feed, mode = self.tied.paced_rows(rows, feed, mode)
         return path.replace(feed=feed, feed_mode=mode)
-
-    def _arc_words(self, lines: Ints) -> ArcWords:
-        """Return centre, radius and turns words of arcs, nan where there is none, in mm."""
-        scale = np.where(self.modes.inch[lines], INCH, 1.0)
-        arcs = np.zeros(self.lines.live, np.bool_)
-        arcs[lines] = True
-
-        def column(address: str) -> Floats:
-            word = self.lines.word(address, arcs) if address else None
-            if word is None:
-                return np.full(len(lines), np.nan)
-            return np.where(word[1][lines], word[0][lines], np.nan)
-
-        return ArcWords(
-            lines,
-            np.stack([column(a) * scale for a in "IJK"], axis=1),
-            column("R") * scale,
-            column(self.dialect.arc_rule.turns),
-            np.stack([~np.isnan(column(a)) for a in "XYZ"], axis=1),
-            np.any([~np.isnan(column(a)) for a in ROTARY], axis=0),
-            self.modes.absolute_centre[lines],
-            self.modes.inch[lines],
-            ways(self.track, lines),
-        )
