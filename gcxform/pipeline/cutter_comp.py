@@ -114,10 +114,10 @@ class _Stretch:
     def follow(self, plain: bytes, before: int) -> None:
         """Go on through a text without comments, with so many bytes before it."""
         last, left = self.begins, -1  # where the last one began, and where in this text it was left
-        codes = [*CODE.finditer(plain)]
+        codes, line = [*CODE.finditer(plain)], 0
         left = self._leave(plain, 0, codes[0].start() if codes else len(plain), left)
         for k, code in enumerate(codes):
-            line = 1 + max(plain.rfind(end, 0, code.start()) for end in (b"\n", b"\r"))
+            line = _line_start(plain, line, code.start())
             if self.begins < 0:
                 self.begins = last if line < left else before + line
             last, self.off, self.seen = self.begins, code[1] == b"0", set()
@@ -134,6 +134,13 @@ class _Stretch:
                 self.begins = -1
                 return word.end()
         return left
+
+
+def _line_start(text: bytes, before: int, at: int) -> int:
+    """Return where the line begins in which a place is; one before it begins at `before`."""
+    for end in (b"\n", b"\r"):  # not from the start of the text: it may have none of them
+        before = max(before, 1 + text.rfind(end, before, at))
+    return before
 
 
 def check_compensated(step: Pass, before: Toolpath, after: Toolpath) -> None:

@@ -240,6 +240,10 @@ class _CentrePath:
         self.sweep = np.array(path.sweep)
         self.sense = path.sense.astype(np.int64)
         self.inserted: dict[int, Edge] = {}
+        self.rows: list[int] = []
+        self.axes: list[list[int]] = []
+        self.finish: list[tuple[float, float]] = []
+        self.standing: list[tuple[int, int, list[int], list[int]]] = []
         self.listed: dict[tuple[int, ...], tuple[list[Any], ...]] = {}
 
     def resolve(self, first: int, last: int) -> None:
@@ -261,7 +265,8 @@ class _CentrePath:
             refusal = path.refuse("GX350", where, error.message, hint)
             raise ContourError(refusal.diagnostics, error.alarm) from None
         self._place(rows, edges, axes)
-        self._still(first, last, rows, axes)
+        if len(rows) < last - first:
+            self.standing.append((first, last, rows, axes))
 
     def _edges(self, first: int, last: int, axes: list[int]) -> tuple[list[int], list[Edge]]:
         """Return the rows that move in the plane, and what they are there."""
@@ -290,7 +295,10 @@ class _CentrePath:
         return self.listed[axes]
 
     def _place(self, rows: list[int], edges: list[Edge], axes: list[int]) -> None:
-        self.end[np.array(rows)[:, None], axes] = [edge.finish for edge in edges]
+        """Take note of where moves go; their ends are written for all stretches together."""
+        self.rows += rows
+        self.axes += [axes] * len(rows)
+        self.finish += [edge.finish for edge in edges]
         for row, edge in zip(rows, edges, strict=True):
             if edge.centre is not None:
                 self.sweep[row] = swept(edge)
@@ -301,8 +309,6 @@ class _CentrePath:
 
     def _still(self, first: int, last: int, rows: list[int], axes: list[int]) -> None:
         """Let rows that stand still in the plane stand where the centre is."""
-        if len(rows) == last - first:
-            return
         inside = np.arange(first, last)
         mover = np.array(rows)[np.searchsorted(rows, inside, "right") - 1]
         for axis in axes:
@@ -311,6 +317,10 @@ class _CentrePath:
     def path(self) -> gx.Toolpath:
         """Return the centre path."""
         before = self.before
+        if self.rows:
+            self.end[np.array(self.rows)[:, None], np.array(self.axes)] = self.finish
+        for each in self.standing:
+            self._still(*each)
         counts = np.ones(len(before), np.int64)
         counts[list(self.inserted)] = 2
         row = np.repeat(np.arange(len(before)), counts)

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 from math import atan2, ceil, hypot, pi, sqrt, tau
 
 Point = tuple[float, float]
@@ -124,6 +125,7 @@ def offset(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
     Raises CannotOffsetError.
     """
     _begin(edges, side, radius, manner)
+    turns = [_turn(one, other, side) for one, other in pairwise(edges)]
     for index in range(1, len(edges)):
         edge = edges[index]
         if edge.centre is not None and edge.reach(side, radius) < 1e-9:
@@ -132,11 +134,11 @@ def offset(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
         edge.begin = _beside(edge.start, edge.first, side, radius)
         edge.finish = _beside(edge.end, edge.last, side, radius)
         if index > 1 or manner.entry is Entry.OWN:
-            _join(edges, index, side, radius, manner)
+            _join(edges, index, turns[index - 1], side, radius, manner)
         else:
             edges[0].finish = edge.begin
     for index in range(len(edges)):
-        _check_direction(edges, index, _ends_inside(edges, index, side, manner))
+        _check_direction(edges, index, _ends_inside(index, turns, manner))
 
 
 def swept(edge: Edge) -> float:
@@ -188,10 +190,11 @@ def _begin_with_arc(edge: Edge, side: int, radius: float, manner: Manner) -> Non
     edge.middle = edge.finish[0] + reach * u[0], edge.finish[1] + reach * u[1]
 
 
-def _join(edges: list[Edge], index: int, side: int, radius: float, manner: Manner) -> None:
-    """Join two neighbours at their corner."""
+def _join(
+    edges: list[Edge], index: int, turn: float, side: int, radius: float, manner: Manner
+) -> None:
+    """Join a move with the one before it at their corner, at which the contour makes a turn."""
     one, other = edges[index - 1], edges[index]
-    turn = _turn(one, other, side)
     if abs(turn) <= manner.straight:
         other.begin = one.finish
     elif one.middle is not None and not turn < 0:
@@ -296,11 +299,11 @@ def _turns_back(one: Edge, other: Edge, turn: float) -> bool:
     return pi - SHARP < turn < pi - BACK
 
 
-def _ends_inside(edges: list[Edge], index: int, side: int, manner: Manner) -> bool:
+def _ends_inside(index: int, turns: list[float], manner: Manner) -> bool:
     """Whether a move ends at an inside corner or is the last: there LinuxCNC looks back at it."""
-    if index in (0, len(edges) - 1):
+    if index in (0, len(turns)):
         return index > 0
-    return _turn(edges[index], edges[index + 1], side) > manner.straight
+    return turns[index] > manner.straight
 
 
 def _turn(one: Edge, other: Edge, side: int) -> float:
@@ -315,10 +318,11 @@ def _check_direction(edges: list[Edge], index: int, alarm: bool) -> None:
     if edge.middle is not None:
         return
     if edge.centre is not None:
-        if not 0 <= swept(edge) <= edge.sweep + LONGER:
+        sweep = swept(edge)
+        if not 0 <= sweep <= edge.sweep + LONGER:
             message = "the tool cannot reach the arc between inside corners"
             raise CannotOffsetError(index, message, alarm)
-        if ceil(swept(edge) / tau - 1e-9) > ceil(edge.sweep / tau - 1e-9):
+        if ceil(sweep / tau - 1e-9) > ceil(edge.sweep / tau - 1e-9):
             raise CannotOffsetError(index, "the circle would be cut by more than a turn")
         return
     way = (edge.finish[0] - edge.begin[0]) * edge.first[0]
