@@ -19,6 +19,7 @@ from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import Functions, whole_columns
 from gcxform.modal.line_notes import Assigned
 from gcxform.system.arrays import Floats, Ints
+from gcxform.system.records import of_rows
 from gcxform.values import dataclass
 
 
@@ -142,4 +143,4 @@ def _in_order(found: dict[Key, tuple[Ints, Floats, Ints]], first_line: int) -> l
     order = np.lexsort((places, lines))
     named = map(keys.__getitem__, which[order].tolist())
     columns = (lines[order] + first_line).tolist(), named, values[order].tolist(), repeat("")
-    return [*map(Assigned._make, zip(*columns, strict=False))]
+    return [*of_rows(Assigned, zip(*columns, strict=False))]
