@@ -47,9 +47,11 @@ def _at_rest_unknown(path: Toolpath, unknown: Flags) -> Toolpath:
     `unknown` is where the source knows neither where a move starts nor where it ends: one that it
     takes from a known place to a place of the machine must not rest.
     """
-    end, rests = path.end.copy(order="F"), path.end == path.start
-    end[rests & unknown] = np.nan
-    return path.replace(end=end)
+    start, end = path.start, path.end.copy(order="F")
+    left = (end == start) & unknown
+    end[left] = np.nan
+    bits = 1 << np.arange(len(path.axes))
+    return path.replace(end=end, lost=path.lost | (left & np.isfinite(start)) @ bits)
 
 
 def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:

@@ -83,6 +83,13 @@ MUTATIONS = (
         "tests/test_lengths_across.py",
     ),
     Mutation(
+        "proof: an arc may begin where only the output knows where an axis stands",
+        "gcxform/proof/known_positions.py",
+        "lost=path.lost | (left & np.isfinite(start)) @ bits)",
+        "lost=path.lost)",
+        "tests/test_corpus.py::test_case[dialects/haas/arc-behind-home]",
+    ),
+    Mutation(
         "deviation: the sense of arcs is ignored",
         "gcxform/deviations/deviation.py",
         "(after.sense[rows] == self.sense)",

@@ -79,8 +79,8 @@ MUTATIONS = (
     Mutation(
         "switches: the proof lets axes move of which the source knows nothing",
         KNOWN,
-        "end[rests & unknown] = np.nan",
-        "end[unknown] = np.nan",
+        "left = (end == start) & unknown",
+        "left = unknown",
         f"{TESTS}::test_what_is_not_known_may_not_move",
     ),
 )
