@@ -30,6 +30,7 @@ from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.reasons import changed_lines
 from gcxform.pipeline.structure import Structure
 from gcxform.pipeline.text_passes import TextRun
+from gcxform.pipeline.timed_arcs import check_timed_arcs
 from gcxform.pipeline.translated_moves import said_in_moves, settled
 from gcxform.pipeline.whole_cuts import undivided
 from gcxform.pipeline.written_back import SpelledOut, WrittenBack, structure_of
@@ -355,6 +356,7 @@ class Run:
             path = said_in_moves(self.plan, number, read, path, window, name)
         with placing(window, name):
             check_mixed(read.path, path, self.plan.context)
+            check_timed_arcs(read.path, path, self.plan.context)
         return Transformed(window, table, read, meant, in_words_of(self.plan.target, path))
 
     def _held(self, number: int, path: Toolpath) -> Toolpath:

@@ -44,6 +44,27 @@ MUTATIONS = (
         "(rotary > 0)",
         f"{CORPUS}[bad/gx320-inches]",
     ),
+    Mutation(
+        "timed arcs: another control takes the time that G93 gives them",
+        "gcxform/pipeline/timed_arcs.py",
+        "wrong = timed if source is not target else",
+        "wrong = timed & False if source is not target else",
+        f"{CORPUS}[dialects/across/timed-arc-for-grbl]",
+    ),
+    Mutation(
+        "timed arcs: lines in their place take the time that they have",
+        "gcxform/pipeline/timed_arcs.py",
+        "return np.asarray(differ[arcs.source])",
+        "return np.zeros(len(arcs), np.bool_)",
+        f"{CORPUS}[dialects/grbl/timed-arc-in-lines]",
+    ),
+    Mutation(
+        "timed arcs: those that stay are refused",
+        "gcxform/pipeline/timed_arcs.py",
+        "timed & _become_others(read, path, arcs)",
+        "timed",
+        f"{CORPUS}[dialects/grbl/timed-arc-stays]",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",
