@@ -65,6 +65,27 @@ MUTATIONS = (
         "timed",
         f"{CORPUS}[dialects/grbl/timed-arc-stays]",
     ),
+    Mutation(
+        "metric: the speed of a surface is the same in feet and in metres",
+        "plugins/gcxform_plugins/passes/metric.py",
+        "        if on:\n",
+        "        if on and False:\n",
+        f"{CORPUS}[metric/surface-speed]",
+    ),
+    Mutation(
+        "metric: a speed of the spindle is one of the surface",
+        "plugins/gcxform_plugins/passes/metric.py",
+        "on = modes[-1] if modes else on",
+        "on = on or any(modes)",
+        f"{CORPUS}[metric/surface-speed-in-mm]",
+    ),
+    Mutation(
+        "metric: only letters of axes and arcs are lengths",
+        "plugins/gcxform_plugins/passes/metric.py",
+        "LENGTHS.union(code.lengths)",
+        "LENGTHS",
+        f"{CORPUS}[metric/smoothness]",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",

@@ -33,7 +33,7 @@ refused. What is not named here is as in `fanuc`.
 | G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
-| G103, G187 | look-ahead, smoothness: change no position | manual |
+| G103, G187 | look-ahead, smoothness: change no position; E is a length | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | M99 P | a jump in its own program, also behind `[...]` or `IF [...]` (96-8000 p. 118) | manual |
 | G65 | as Fanuc's, nine deep; L keeps what the macro did to its variables; list II | manual |
@@ -101,7 +101,7 @@ class Haas(Fanuc):
         "G101": v.frame("mirror", "mirror", "XYZABC"),
         "G103": v.inert("non-modal", "P", act="look-ahead"),
         "G113": v.barrier("transform", v.TRANSFORM),
-        "G187": v.inert("non-modal", "PE", act="look-ahead"),
+        "G187": v.inert("non-modal", "PE", "E", act="look-ahead"),
         "G154": Fanuc.codes["G54.1"],
         **{code: v.frame("frame", "work") for code in MORE_OFFSETS},
         **{code: v.cuts("ZDIJKLPQR") for code in ("G12", "G13")},

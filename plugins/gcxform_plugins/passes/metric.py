@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
@@ -11,6 +13,8 @@ import gcxform as gx
 LENGTHS = frozenset("XYZUVWIJKR")
 FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror"})
 """What codes do that are not written where they are folded into the words of moves."""
+KEPT = "the words of {} are in inches, stay, and would be read as mm"
+SURFACE = "S is in feet a minute under G96, stays, and would be read as metres"
 
 
 @dataclass(frozen=True)
@@ -33,31 +37,39 @@ class Metric(gx.Pass):
 
 def _refuse_lengths(path: gx.Toolpath, dialect: type[gx.Dialect]) -> None:
     """Raise InputError where a code has a length in inches: its number would be one of mm."""
+    kept = [(e, KEPT.format(e.what)) for e in path.events if _has_length(e, path, dialect)]
     found = [
-        gx.Diagnostic(
-            "GX501",
-            f"the words of {event.what} are in inches, stay, and would be read as mm",
-            gx.Location("", event.line + 1),
-            _way_out(event, dialect),
-        )
-        for event in path.events
-        if path.blocks.inch[event.line - path.blocks.first] and _has_length(event, path, dialect)
+        gx.Diagnostic("GX501", message, gx.Location("", event.line + 1), _way_out(event, dialect))
+        for event, message in (*kept, *((event, SURFACE) for event in _surface_speeds(path)))
+        if path.blocks.inch[event.line - path.blocks.first]
     ]
     if found:
         raise gx.InputError(tuple(found))
 
 
 def _has_length(event: gx.Event, path: gx.Toolpath, dialect: type[gx.Dialect]) -> bool:
-    """Whether an event is written with a word that is a length: that of G64 is a tolerance."""
+    """Whether an event is written with a word that is a length: those of G64 are tolerances."""
     code = dialect.codes.get(event.what)
     if code is None or (path.folded and code.act in FOLDED):
         return False
     letters = {address for address, value in event.values if value}  # 0 has no unit
-    return bool(letters & LENGTHS or (event.what == "G64" and letters))
+    return not letters.isdisjoint(LENGTHS.union(code.lengths))
+
+
+def _surface_speeds(path: gx.Toolpath) -> Iterator[gx.Event]:
+    """Yield what says the speed of a surface: G96, and each S until G97."""
+    on = False
+    for _, line in groupby(path.events, key=lambda event: event.line):
+        events = list(line)
+        modes = [event.what == "G96" for event in events if event.what in ("G96", "G97")]
+        on = modes[-1] if modes else on
+        if on:
+            yield from (e for e in events if e.what == "G96" or "S" in dict(e.values))
 
 
 def _way_out(event: gx.Event, dialect: type[gx.Dialect]) -> str:
     """Return what to do: to leave the block out would shift the part."""
-    if dialect.codes[event.what].act in FOLDED:
+    code = dialect.codes.get(event.what)
+    if code is not None and code.act in FOLDED:
         return gx.put_before("offsets", why=": it writes what the block does into the moves")
     return "write the block in mm (G21)"
