@@ -40,6 +40,13 @@ def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
 
 MUTATIONS = (
     Mutation(
+        "cutter-comp: every control goes straight past corners in rapid",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
+        "if not context.source.cutter_comp.corners:",
+        "if False:",
+        f"{CORPUS}[cutter-comp/rapid-corner-fanuc]",
+    ),
+    Mutation(
         "cutter: a tool that is only selected is asked for its radius",
         "gcxform/cli/program/machine_needs.py",
         "spindle = selected if block.meaning.changes_tool else spindle",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -72,6 +72,8 @@ class CutterComp(gx.CompensationPass):
         centre = _CentrePath(path, self._manner(context))
         for first, last in _sections(path):
             centre.resolve(first, last)
+        if not context.source.cutter_comp.corners:
+            _refuse_rapid_corners(path, centre.inserted)
         return centre.path().replace(blocks=blocks)
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
@@ -226,6 +228,18 @@ def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
         return
     last = np.array([len(path) - 1])
     raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
+
+
+def _refuse_rapid_corners(path: gx.Toolpath, inserted: Mapping[int, Edge]) -> None:
+    """Refuse rapids behind an outside corner that is an arc: how they go around is known of none.
+
+    Straight past it, as LinuxCNC does, the tool would cut into the corner.
+    """
+    around = np.array([row for row, edge in inserted.items() if edge.corner == "arc"], np.int64)
+    wrong = around[path.kind[around] == gx.Kind.RAPID]
+    if len(wrong):
+        message = "a rapid around an outside corner, of which it is not known how it is joined"
+        raise path.refuse("GX232", np.sort(wrong), message, "go around the corner with G1")
 
 
 class _CentrePath:
