@@ -148,7 +148,9 @@ class CodeWords:
         if self.source is not self.target or f"M{number}" in self.saying.m_codes:
             self._check_m(word, number, code)
             text = like(text, self.saying.instead(f"M{number}"))
-            if apart(self.manner, number) and self.key.role is not Role.NONE:
+            if self.key.role is not Role.NONE and any(
+                word in w for w in apart(self.manner, self.shape)
+            ):
                 return  # it has a block of its own
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.key.as_it_stands

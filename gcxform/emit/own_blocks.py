@@ -17,15 +17,33 @@ from gcxform.emit.expressible import STATED, code_of, end_of_length, like
 from gcxform.emit.manner import Manner, Task
 from gcxform.modal.meaning.meaning import EventShape
 from gcxform.syntax.shapes import Shape
-from gcxform.syntax.tree import Number
+from gcxform.syntax.tree import Number, Word
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import Given
 
 
-def apart(manner: Manner, number: int) -> MCode | None:
-    """Return an M code that has to stand by itself beside a motion; None for another."""
-    code, other = m_codes_of(manner, number)
-    return code if code is not None and other is not None and code.after != other.after else None
+def apart(manner: Manner, shape: Shape) -> tuple[list[Word], list[Word]]:
+    """Return the M words of a block that have to stand by themselves before and behind its motion.
+
+    What acts behind it on both controls goes behind it as well where another one has to: M0 in the
+    block of the motion would act before the M9 of the next one.
+    """
+    before: list[Word] = []
+    behind: list[Word] = []
+    goes_behind = False
+    for word in shape.block.words:
+        if word.address != "M" or not isinstance(word.value, Number):
+            continue
+        code, other = m_codes_of(manner, int(word.value.value))
+        if code is None or other is None:
+            continue
+        crosses = code.after != other.after
+        goes_behind |= crosses and code.after
+        if code.after and (crosses or not code.takes):
+            behind.append(word)
+        elif crosses:
+            before.append(word)
+    return before, behind if goes_behind else []
 
 
 def m_codes_of(manner: Manner, number: int) -> tuple[MCode | None, MCode | None]:
@@ -101,12 +119,8 @@ def _number(task: Task, line: int, event: EventShape) -> str:
 
 def _texts(manner: Manner, shape: Shape) -> tuple[str, str]:
     """Return the M codes of blocks of a shape that stand by themselves before and behind it."""
-    texts: tuple[list[str], list[str]] = [], []
-    for word in shape.block.words:
-        if word.address != "M" or not isinstance(word.value, Number):
-            continue
-        code = apart(manner, int(word.value.value))
-        if code is not None:
-            text = shape.block.text[word.start : word.end]
-            texts[code.after].append(like(text, manner.saying.instead(code_of(word))))
-    return " ".join(texts[False]), " ".join(texts[True])
+    before, behind = (
+        [like(shape.block.text[w.start : w.end], manner.saying.instead(code_of(w))) for w in words]
+        for words in apart(manner, shape)
+    )
+    return " ".join(before), " ".join(behind)

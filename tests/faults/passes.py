@@ -86,6 +86,13 @@ MUTATIONS = (
         "LENGTHS",
         f"{CORPUS}[metric/smoothness]",
     ),
+    Mutation(
+        "across: a stop is not behind what has to go behind the motion",
+        "gcxform/emit/own_blocks.py",
+        "(crosses or not code.takes)",
+        "crosses",
+        f"{CORPUS}[dialects/across/stop-behind-coolant]",
+    ),
     # the error model and the search for commands
     Mutation(
         "compensate: the sign of the error is swapped",

@@ -197,8 +197,8 @@ MUTATIONS = (
     Mutation(
         "saying: M codes stand on the other side of the move",
         OWN,
-        "texts[code.after].append",
-        "texts[not code.after].append",
+        "if code.after and (crosses or",
+        "if not code.after and (crosses or",
         HERE,
     ),
     Mutation(
