@@ -55,6 +55,20 @@ FAULTS = (
         "tests/test_cli.py::test_a_unit_that_a_setting_decides_is_told_where_moves_are_cut",
     ),
     (
+        "a shift is no length of which somebody has to say the unit",
+        "gcxform/modal/moves/open_units.py",
+        "    long |= _taken(lines)\n",
+        "",
+        f"{CASE}[dialects/across/unit-of-a-shift-is-not-said]",
+    ),
+    (
+        "a shift by nothing is a length of which somebody has to say the unit",
+        "gcxform/modal/moves/open_units.py",
+        "found[line] = lines.window.value[lines.first[line] + slots].any()",
+        "found[line] = bool(slots)",
+        f"{CASE}[dialects/across/unit-of-no-shift]",
+    ),
+    (
         "a unit that is said behind the first length counts for it",
         "gcxform/modal/moves/open_units.py",
         "before = slice(0, int(said[0]) if len(said) else lines.live)",

@@ -11,6 +11,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.modal.lines import LENGTHS, Lines
+from gcxform.system.arrays import Flags
 
 OPEN = "unit-open"
 CODE = "GX235"
@@ -29,6 +30,7 @@ def refuse_open_units(lines: Lines) -> None:
     words = (lines.word(address, distance=False) for address in LENGTHS)
     for value, has in filter(None, words):
         long |= has[: lines.live] & (value[: lines.live] != 0)
+    long |= _taken(lines)
     if found := np.flatnonzero(long[before])[:1].tolist():
         lines.state.memory[OPEN] = 0
         if lines.reading.unit_open == "refused":
@@ -39,3 +41,12 @@ def refuse_open_units(lines: Lines) -> None:
         message = f"{MESSAGE}: taken to be {taken}"
         warning = Diagnostic(CODE, message, where, HINT, severity=Severity.WARNING)
         lines.state.assumed[message] = warning
+
+
+def _taken(lines: Lines) -> Flags:
+    """Return the lines (live,) with a length, not 0, that a code takes for itself, as G52 does."""
+    found = lines.flag("takes_lengths")
+    for line in np.flatnonzero(found).tolist():
+        slots = [slot for *_, slot in lines.table.meanings[int(lines.shape[line])].lengths]
+        found[line] = lines.window.value[lines.first[line] + slots].any()
+    return found
