@@ -162,6 +162,18 @@ MUTATIONS = (
         "return sealed_anew(text) if self.marks.read.fits else text",
         "return sealed_anew(text)",
         ONCE,
+        "klartext: FAUTO is the feed of the tool before one that is kept",
+        BACK,
+        'self.tool_feed = self.in_spindle = self.spindle = ""',
+        'self.in_spindle = self.spindle = ""',
+        "tests/test_corpus.py::test_case[dialects/heidenhain-feed-of-a-kept-tool]",
+    ),
+    Mutation(
+        "klartext: what stands behind a kept tool along Y is read as one along Z",
+        BACK,
+        'item.kind == "tool_axis" and item.name != "Z"',
+        'item.kind == "tool_axis" and item.name == "W"',
+        "tests/test_corpus.py::test_case[dialects/heidenhain-kept-tool-along-y]",
     ),
     Mutation(
         "klartext: a shift of one axis is written, and read as one of three",

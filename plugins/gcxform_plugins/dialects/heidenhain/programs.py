@@ -173,7 +173,8 @@ class Programs(Runs):
                 self.turn = self.mirrored = None
         if "text" in said and not QUIET.match(words):
             self.q, self.side, self.aside = dict.fromkeys(self.q), "", True
-            self.feed_lost, self.in_spindle, self.cycle = True, "", -1
+            self.feed_lost, self.cycle = True, -1
+            self.tool_feed = self.in_spindle = ""
         elif "text" in said:
             named = {key_of(name) for name in NAMED.findall(words)}
             if words.startswith("TCH"):
@@ -181,12 +182,20 @@ class Programs(Runs):
             self.q |= dict.fromkeys(named)
         elif said & {"feed", "per", "auto", "m"}:
             self.feed_lost = True
+        if "tool_call" in said:
+            self._lose_tool(items)
         if re.search(r"(?<![A-Z])(?:APPR|DEP|R[LR])(?![A-Z])|(?<![A-Z])R0?(?![\d.,A-Z])", words):
             self.side, self.aside = "", True
         called = {item.numbers[0] for item in items if item.kind == "m"}
         self.modal = (self.modal or "89" in called) and "99" not in called
         if words.startswith(("CYCL", "TRANS")):
             self._lose_cycle(words)
+
+    def _lose_tool(self, items: Sequence[gx.Item]) -> None:
+        """Forget the tool before, and its feed; along another axis the plane is another one."""
+        self.tool_feed = self.in_spindle = self.spindle = ""
+        if any(item.kind == "tool_axis" and item.name != "Z" for item in items):
+            self._keep_rest("a tool along another axis than Z")
 
     def _lose_cycle(self, words: str) -> None:
         """Forget what was defined before: another cycle, or another place of the zero."""
