@@ -162,6 +162,22 @@ MUTATIONS = (
         "return sealed_anew(text) if self.marks.read.fits else text",
         "return sealed_anew(text)",
         ONCE,
+    ),
+    Mutation(
+        "klartext: AUTO of a cycle stays the feed of the tool before",
+        PROGRAM,
+        "        self.assigned(AUTO)\n",
+        "",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-cycle-auto-of-another-tool]",
+    ),
+    Mutation(
+        "klartext: what the values of a hole were taken from is forgotten with another cycle",
+        CYCLES,
+        "        told: dict[int, Decimal] = {}\n        for found",
+        "        told: dict[int, Decimal] = {}\n        self.refers = set()\n        for found",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-cycle-refers]",
+    ),
+    Mutation(
         "klartext: FAUTO is the feed of the tool before one that is kept",
         BACK,
         'self.tool_feed = self.in_spindle = self.spindle = ""',

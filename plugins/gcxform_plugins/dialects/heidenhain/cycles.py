@@ -27,10 +27,13 @@ CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(
-    rf"Q(\d{{1,4}})\s*=\s*(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?=[\s~]|$)|\S*)"
+    rf"Q(\d{{1,4}})\s*=\s*"
+    rf"(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?=[\s~]|$)|F?\s*(AUTO)(?=[\s~]|$)|\S*)"
 )
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
+FEEDS = 206, 208
+AUTO = "AUTO"
 STROKES = 200, 205
 SLOWLY = 201, 203
 """Cycles that are read in several strokes, and those that leave at a feed."""
@@ -65,14 +68,12 @@ class Cycles(Datums):
             return self._tolerance(item, part, text)
         if number == 247:
             return self.preset(item, self._parameters(item, text))
-        if number in HOLES:
+        if number in HOLES or (number == TAP and not self.reading.stays):
+            self.refers = set()
             self.hole, self.cycle = self._parameters(item, text), number
             return []
         if number in PATTERNS:
             return self._pattern(item, number, self._parameters(item, text))
-        if number == TAP and not self.reading.stays:
-            self.hole, self.cycle = self._parameters(item, text), TAP
-            return []
         if number == 1:
             return self._peck(item, part, text)
         why = OTHERS.get(number, "a cycle of the control")
@@ -172,11 +173,10 @@ class Cycles(Datums):
     def _parameters(self, item: gx.Item, text: str) -> dict[int, Decimal]:
         """Return the parameters of a cycle, from this line or from those behind it.
 
-        They are those of the program as well. What is said by another word than a number or a
-        parameter is not known.
+        They are those of the program as well. What is said by another word than a number, a
+        parameter, or AUTO for the feed of the tool, is not known.
         """
         told: dict[int, Decimal] = {}
-        self.refers = set()
         for found in PARAMETER.finditer(" ".join([text, *self.told_lines()])):
             number, value, parameter = int(found[1]), found[2], found[3]
             if parameter:
@@ -185,6 +185,9 @@ class Cycles(Datums):
             if value:
                 told[number] = Decimal(plain(value))
             self.q[f"Q{number}"] = float(told[number]) if value else None
+            if found[4] and number in FEEDS and self.tool_feed:
+                told[number] = Decimal(self.tool_feed)
+                self.refers.add(AUTO)
         return told
 
     def told_lines(self) -> Iterator[str]:

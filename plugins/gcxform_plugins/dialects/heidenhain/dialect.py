@@ -8,7 +8,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 |---|---|---|
 | F | stays in force; FMAX is for its block only, and F before it holds again | [K] |
 | F in inches | tenths of an inch per minute; degrees where only rotary axes move | 640, p. 343 |
-| FAUTO | the feed of the last TOOL CALL | [K] |
+| FAUTO, and AUTO as Q206 or Q208 | the feed of the last TOOL CALL | [K] |
 | `IX+5` | from where X stands; others in the block may be absolute | TNC 407, p. 5-44 |
 | CC | `IX` from the last place of the tool, nothing: that place | TNC 360, p. 5-16 |
 | C | about CC; the end may be 0.016 mm off; end as start: a full circle | TNC 320, p. 155 |

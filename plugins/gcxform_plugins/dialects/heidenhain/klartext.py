@@ -9,7 +9,7 @@ from math import isnan
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.cycles import Cycles
+from gcxform_plugins.dialects.heidenhain.cycles import AUTO, Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
 from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
@@ -175,6 +175,7 @@ class Klartext(Cycles):
                 "TOOL CALL while the control follows the tip", items[0], "write M129 before"
             )
         self.tool, self.tool_name, self.tool_feed = "", "", ""
+        self.assigned(AUTO)
         words = "".join(self._tool_word(item) for item in items[1:] if item.kind != "delta")
         deltas = self._deltas([item for item in items if item.kind == "delta"])
         if not self.tool and (deltas or self.deltas):

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from operator import attrgetter
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.cycles import AUTO
 from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.positioning import SHORTEST, SILENT
@@ -194,6 +195,7 @@ class Programs(Runs):
     def _lose_tool(self, items: Sequence[gx.Item]) -> None:
         """Forget the tool before, and its feed; along another axis the plane is another one."""
         self.tool_feed = self.in_spindle = self.spindle = ""
+        self.assigned(AUTO)
         if any(item.kind == "tool_axis" and item.name != "Z" for item in items):
             self._keep_rest("a tool along another axis than Z")
 
