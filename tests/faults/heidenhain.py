@@ -178,6 +178,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain-cycle-refers]",
     ),
     Mutation(
+        "klartext: a line that goes on with a comment is one of its own",
+        PROGRAM,
+        "        self._check_continued()\n",
+        "",
+        "tests/test_corpus.py::test_case[dialects/heidenhain-comment-goes-on]",
+    ),
+    Mutation(
         "klartext: FAUTO is the feed of the tool before one that is kept",
         BACK,
         'self.tool_feed = self.in_spindle = self.spindle = ""',

@@ -85,6 +85,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | FN 14, 17, 19, 20, 29 and others | refused | |
 | Q200 to Q211 set behind cycle 200 | whether it then counts is not known: refused | |
 | CALL PGM, SEL PGM | `NAME.H` beside the program; Q are the same there, QL its own | 640, p. 102 |
+| a line without a number behind `~`, but of a cycle or a pattern | refused | |
 | lines in brackets before BEGIN PGM | are none of the program | |
 | a number of more than 20 characters | refused | |
 | a file without END PGM, M2 or M30 | refused: it breaks off | |

@@ -13,7 +13,7 @@ from gcxform_plugins.dialects.heidenhain.cycles import AUTO, Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
 from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
-from gcxform_plugins.dialects.heidenhain.words import MM, exact, plain, written
+from gcxform_plugins.dialects.heidenhain.words import MM, exact, goes_on, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
@@ -28,6 +28,11 @@ OTHERWISE = {
     "PATHCTRL VECTOR": "the tool axis then stays in a plane; write PATHCTRL AXIS",
     "REFPNT": "the control then follows another point of the tool",
 }
+ONE_LINE = re.compile(
+    r"[\s\d/]*(?:[;*]|(?:L|LP|C|CC|CP|CR|CT|RND|CHF|APPR|DEP|M|STOP|TOOL)(?![A-Z]))", re.IGNORECASE
+)
+"""Statements that are read from one line."""
+UNNUMBERED = re.compile(r"\s*[^\s\d;]")
 LBL_0 = "write LBL 0 where it ends, behind what it does"
 LONGEST_TOOL = 9  # digits
 
@@ -122,6 +127,7 @@ class Klartext(Cycles):
 
     def _begin(self, item: gx.Item) -> list[str]:
         match = BEGIN.fullmatch(item.name)
+        self._check_continued()
         if match is not None and self.calls and self.line == self.calls[-1].first:
             if (match[1] == "INCH") != self.inch:
                 self.refuse("a program in another unit is called", item)
@@ -133,6 +139,19 @@ class Klartext(Cycles):
             scale = MM if self.inch and axis not in "ABC" else 1.0
             self.place[axis] = exact(Decimal(repr(value / scale)))
         return [f"{'G20' if self.inch else 'G21'} G17 G90 G94"]
+
+    def _check_continued(self) -> None:
+        """Refuse a line without a number behind `~` of which it is not certain what it is.
+
+        It may be a part of the comment before it, or words. Raises InputError.
+        """
+        lines = self.lines
+        for k in [k for k in range(self.line, len(lines) - 1) if "~" in lines[k]]:
+            if goes_on(lines[k]) and ONE_LINE.match(lines[k]) and UNNUMBERED.match(lines[k + 1]):
+                message = "this line goes on with the one before it, which ends in ~"
+                hint = "take ~ away, or make one line of both"
+                place = 0, len(lines[k + 1])
+                raise self.error_at(k + 1, "GX210", message, place, hint)
 
     def _end(self, item: gx.Item) -> list[str]:
         match = END.fullmatch(item.name)
