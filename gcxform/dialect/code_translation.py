@@ -13,6 +13,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | blend (G64) | nothing: corners stay nearer to the program |
 | blend, without the tolerance that it has there | nothing: without one it would have no bound |
 | look-ahead, rpm, cancel | nothing: no position, no feed hangs on it there |
+| arc-corners, linear-corners | nothing: G41 joins moves there as that control does |
 | no-rotate, no-scale, no-mirror, no-polar | nothing, where nothing there begins what they end |
 | G28, to a point of another kind there, or letting go of the tool length | G53 to the point |
 | G53 at a feed, where G53 is always rapid there | the place, by words of the work offset |
@@ -33,7 +34,9 @@ from gcxform.values import dataclass
 
 EXACT_STOP, EXACT_PATH, BLEND = "exact-stop", "exact-path", "blend"
 LOOK_AHEAD, RPM, CANCEL = "look-ahead", "rpm", "cancel"
-SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL})
+AROUND = frozenset({"arc-corners", "linear-corners"})
+"""What joins two moves outside under compensation, up to the dash."""
+SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL}) | AROUND
 """Acts of codes that change no position."""
 HOME, MACHINE = "home", "machine"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
@@ -41,7 +44,7 @@ NO_LENGTH = "no-length"
 ABORT = "ABORT"
 """A comment that ends the program: it stays."""
 STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
-NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})
+NEEDLESS = frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL}) | AROUND
 ENDS = "no-"
 SWITCHED = "/"
 LASTING, EXECUTED = "#", "()"

@@ -47,6 +47,20 @@ MUTATIONS = (
         f"{CORPUS}[cutter-comp/rapid-corner-fanuc]",
     ),
     Mutation(
+        "cutter-comp: the machine file goes before what the program says of corners",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
+        'corners_said(path, context).only if name == "corners" else ""',
+        '""',
+        "tests/test_corpus.py::test_case[cutter-comp/siemens-corners-said]",
+    ),
+    Mutation(
+        "cutter-comp: what the program says of corners later does not count",
+        "plugins/gcxform_plugins/passes/cutter_comp/corners_said.py",
+        "zip(self.rows.tolist(), self.ways, strict=True)",
+        "[*zip(self.rows.tolist(), self.ways, strict=True)][:1]",
+        "tests/test_corpus.py::test_case[cutter-comp/gx740-changes]",
+    ),
+    Mutation(
         "cutter: a tool that is only selected is asked for its radius",
         "gcxform/cli/program/machine_needs.py",
         "spindle = selected if block.meaning.changes_tool else spindle",

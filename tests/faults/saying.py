@@ -169,8 +169,8 @@ MUTATIONS = (
     Mutation(
         "saying: an exact stop is needless",
         SAYING,
-        "frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL})\nENDS",
-        "frozenset({BLEND, EXACT_STOP, LOOK_AHEAD, RPM, CANCEL})\nENDS",
+        "frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL}) | AROUND\nENDS",
+        "frozenset({BLEND, EXACT_STOP, LOOK_AHEAD, RPM, CANCEL}) | AROUND\nENDS",
         HERE,
     ),
     Mutation(

@@ -45,6 +45,27 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: G451 is passed over where a contour begins",
+        BLOCKS,
+        "self.corners and (begins or said)",
+        "self.corners and said",
+        "tests/test_corpus.py::test_windows_make_no_difference[cutter-comp/gx740-said-otherwise]",
+    ),
+    Mutation(
+        "siemens: G451 beside a dwell is passed over",
+        BLOCKS,
+        "            return self.corners\n",
+        '            return ""\n',
+        f"{CASES}[cutter-comp/siemens-corners-go-along]",
+    ),
+    Mutation(
+        "siemens: KONT is NORM",
+        BLOCKS,
+        "if begins and self.around:",
+        "if begins and not self.comp:",
+        f"{CASES}[cutter-comp/siemens-kont]",
+    ),
+    Mutation(
         "siemens: a tap is read whichever way the spindle turns before it",
         BLOCKS,
         "if tap.sense != self.spindle or ",

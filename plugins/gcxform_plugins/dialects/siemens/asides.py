@@ -7,6 +7,11 @@ along as it was programmed, in a comment of its block.
 from __future__ import annotations
 
 INERT = frozenset(("601", "602", "603", "290", "450", "451"))
+AROUND = frozenset(("G450", "G451"))
+"""Those that say what joins moves outside, under compensation."""
+KONT = "KONT"
+ENTRIES = frozenset((KONT, "NORM"))
+"""And which way leads to the contour."""
 BLENDS = frozenset(("64", "641", "642", "643", "644", "645"))
 # fmt: off
 QUIET = frozenset((

@@ -12,6 +12,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.asides import AROUND, ENTRIES, KONT
 from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
 from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
@@ -32,10 +33,11 @@ class Blocks(Contours):
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
+    corners    G450 or G451, as it was said;  around: KONT is in force
     """
 
-    feed_open = False
-    spindle = speed = ""
+    feed_open = around = False
+    spindle = speed = corners = ""
 
     grammar = ("gcxform_grammars", "siemens")
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
@@ -61,10 +63,11 @@ class Blocks(Contours):
         for item in items:
             self.read.get(item.kind, self.unread)(line, item)
         self._check_feed(line)
+        behind = self._take_around(line)
         if line.corner or (self.rounding and line.axes):
             self.take_corner(line)
         try:
-            made = [block for block in self._made(line) if block]
+            made = [block for block in (*self._made(line), behind) if block]
         except PlaceError as error:
             at = line.alone or self.any_of(line)
             raise self.refusal(error.code, error.message, at, error.hint) from None
@@ -104,6 +107,27 @@ class Blocks(Contours):
         if self.feed_open and cuts and (line.axes or line.centres or line.named):
             message = "which feed is in force behind a cycle with its own is not known"
             self.refuse(message, self.any_of(line), FEED)
+
+    def _take_around(self, line: Line) -> str:
+        """Take how contours are gone round, and say it there, and again where each begins.
+
+        Return the block of it where the line has blocks of their own; one that stays says it
+        itself. Raises InputError for what leads to contours another way.
+        """
+        said = [each for each in line.asides if each in AROUND]
+        ways = [each for each in line.asides if each in ENTRIES]
+        self.corners = said[-1] if said else self.corners
+        self.around = ways[-1] == KONT if ways else self.around
+        begins = self.comp and "comp" in line.groups
+        if begins and self.around:
+            self.refuse(f"{KONT}: which way leads to the contour is not certain", self.any_of(line))
+        if self.reading.stays or not (self.corners and (begins or said)):
+            return ""
+        line.asides = [each for each in line.asides if each not in AROUND]
+        if line.dwell or line.act or line.cycle or line.alone or line.pole:
+            return self.corners
+        line.codes.append(self.corners)
+        return ""
 
     def _made(self, line: Line) -> Iterator[str]:
         framed = line.alone is not None and line.alone.name in FRAMES

@@ -64,6 +64,8 @@ kept as it stands, with all that is lost behind it.
 | ORIVECT, ORIPLANE, ORIMKS, ORIWKS, none | cuts that turn axes: refused | PM 674 |
 | `[control] orientation-path = "angles"` | in proportion unless ORIVECT or ORIPLANE is in force | |
 | `A3= B3= C3=`, `A2=`, LEAD, TILT | refused | |
+| G450, G451 | outside corners by arcs, by lines that meet; `cutter-comp` says the same | W1 |
+| KONT | refused with G41 and G42: the way to the contour may be another one | [K] |
 | G60, G9 | exact stops | [K] |
 | G64, G641 to G645 | corners are rounded: G64, however far | [K] |
 | G601 to G603, ADIS | how far: left out | [K] |
@@ -167,6 +169,8 @@ class Siemens(gx.Dialect):
         "G9": v.at_end("non-modal"),
         "G60": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),
+        "G450": v.inert("corners", act="arc-corners"),
+        "G451": v.inert("corners", act="linear-corners"),
     }
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {
         **v.ISO_M,

@@ -23,6 +23,7 @@ ROLES = {
 KINDS = frozenset(("word", "value", "named"))
 MODES = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres", "comp"),
+    *("corners", "around"),
     *("changed", "tool", "waiting", "edge", "fed", "feed_mode", "feed_open", "orientation"),
     *("following", "stopped", "decides", "perhaps"),
 )

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.asides import AROUND
 from gcxform_plugins.dialects.siemens.gathering import gathered
 from gcxform_plugins.dialects.siemens.place import text_of
 from gcxform_plugins.dialects.siemens.reading import WORK
@@ -29,7 +30,7 @@ CODES = {
 SAME = frozenset(
     (
         *("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G93", "G94", "G95", "G9"),
-        *("G40", "G41", "G42", "G60", "G64"),
+        *("G40", "G41", "G42", "G60", "G64", *AROUND),
     )
 )
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}

@@ -10,6 +10,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
+from gcxform_plugins.passes.cutter_comp.corners_said import corners_said
 from gcxform_plugins.passes.cutter_comp.offsetting import (
     CannotOffsetError,
     Corners,
@@ -69,7 +70,7 @@ class CutterComp(gx.CompensationPass):
             return path.replace(blocks=blocks)
         _refuse(path, context)
         self._refuse_open(path, context)
-        centre = _CentrePath(path, self._manner(context))
+        centre = _CentrePath(path, self._manner(path, context))
         for first, last in _sections(path):
             centre.resolve(first, last)
         if not context.source.cutter_comp.corners:
@@ -78,7 +79,7 @@ class CutterComp(gx.CompensationPass):
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
         """Check that the centre is beside the contour all along, and everything else as it was."""
-        manner = self._manner(context)
+        manner = self._manner(before, context)
         straight = manner.straight * (1 + 1e-9)
         linear, beside_next = manner.corners is Corners.LINEAR, manner.entry is Entry.NEXT
         prove_beside(before, after, straight, linear, beside_next)
@@ -106,10 +107,14 @@ class CutterComp(gx.CompensationPass):
             pass
         return None
 
-    def _said(self, name: str, context: gx.PassContext) -> str:
-        """Return how the control does it: by itself, as the option or the machine file says."""
+    def _said(self, name: str, path: gx.Toolpath, context: gx.PassContext) -> str:
+        """Return how the control does it: by itself, as the option, program or machine file says.
+
+        What a program says overrides the parameter of the machine; it says nothing of the entry.
+        """
         machine = context.machine.control if context.machine is not None else {}
         known = getattr(context.source.cutter_comp, name) or getattr(self, name)
+        known = known or (corners_said(path, context).only if name == "corners" else "")
         return str(known or machine.get(f"{self.name}-{name}", ""))
 
     def _refuse_open(self, path: gx.Toolpath, context: gx.PassContext) -> None:
@@ -117,18 +122,19 @@ class CutterComp(gx.CompensationPass):
         first = np.flatnonzero(path.side)[:1]
         found: list[gx.Diagnostic] = []
         for name, values in CHOICES.items() if "G41" in context.source.codes else ():
-            if not self._said(name, context):
+            if not self._said(name, path, context):
                 message = f"{name} of cutter compensation depends on a parameter of the machine"
                 ways = [f'{self.name}-{name} = "{value}" in [control]' for value in values]
                 hint = f'say what it is set to: {", or ".join(ways)}; or {name} = "{values[0]}"'
                 found += path.refuse("GX740", first, message, hint).diagnostics
         if found:
             raise gx.InputError(tuple(found))
+        corners_said(path, context).check(path, self._said("corners", path, context))
 
-    def _manner(self, context: gx.PassContext) -> Manner:
+    def _manner(self, path: gx.Toolpath, context: gx.PassContext) -> Manner:
         rule = context.source.cutter_comp
-        corners = Corners(self._said("corners", context) or Corners.ARC)
-        entry = Entry(self._said("entry", context) or Entry.OWN)
+        corners = Corners(self._said("corners", path, context) or Corners.ARC)
+        entry = Entry(self._said("entry", path, context) or Entry.OWN)
         return Manner(corners, entry, rule.straight or STRAIGHT, bool(rule.corners and rule.entry))
 
 
