@@ -76,6 +76,16 @@ def test_what_cannot_be_inert(code):
         gx.Pipeline(DIALECTS["linuxcnc"], DIALECTS["fanuc"], (), START, inert=frozenset({code}))
 
 
+WITHOUT_H = [("fanuc", "linuxcnc", "the last H"), ("linuxcnc", "fanuc", "the tool in the spindle")]
+
+
+@pytest.mark.parametrize(("source", "target", "which"), WITHOUT_H)
+def test_a_length_without_h_is_told_whose_it_is(source, target, which):
+    found = refused(source, target, "G43 H1 G0 Z5.\nG43 G0 Z6.")
+    assert (found.code, found.where.line) == ("GX501", 3)
+    assert which in found.hint
+
+
 CONTOUR = "G0 X0. Y0. Z5.\n{} G1 X10. F100.\nY20.\nG40 X30."
 WITHOUT_D = [("linuxcnc", "fanuc"), ("linuxcnc", "haas")]
 

@@ -32,6 +32,8 @@ BY_TAP: Final = (
     "let the CAM write the tap for this control: whether the spindle turns in step with the feed, "
     "or a floating chuck makes up for it, each says in its own way, and some by a parameter"
 )
+THE_LAST: Final = "write H in this block, with the number of the last H before it"
+THE_TOOLS: Final = "write H in this block, with the number of the tool in the spindle"
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
 IN_STEP: Final = "G33.1"
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
@@ -113,6 +115,8 @@ class CodeWords:
             self.draft.refuse(word, what, put_before("offsets"))
         if code is not None and code.effect is Effect.INERT:
             self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")
+        if what == f"{name} without H":
+            self.draft.refuse(word, what, THE_LAST if self.source.tool_rule.h_stays else THE_TOOLS)
         rule = self.source.cycle_rule
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name in TAPPING or name == IN_STEP:

@@ -167,6 +167,13 @@ MUTATIONS = (
         HERE,
     ),
     Mutation(
+        "saying: a length without H is whose it is on the other control",
+        "gcxform/emit/codewords.py",
+        "THE_LAST if self.source.tool_rule.h_stays else THE_TOOLS",
+        "THE_LAST if self.target.tool_rule.h_stays else THE_TOOLS",
+        "tests/test_lengths_across.py",
+    ),
+    Mutation(
         "saying: an exact stop is needless",
         SAYING,
         "frozenset({BLEND, LOOK_AHEAD, RPM, CANCEL}) | AROUND\nENDS",
