@@ -114,6 +114,13 @@ def test_of_two_values_on_trial_the_one_with_which_least_is_found_counts(here: P
     assert "GX215" not in err  # 0.1 mm, below R2., in IS-B
 
 
+def test_m_codes_that_are_asked_about_are_named(here: Path) -> None:
+    text = "O0001\nG21 G94 G90 G0 X0. Y0.\nM20\nG91 X1.\nM21\nG91 X1.\nM22\nX1.\nM30\n"
+    (here / "p.nc").write_text(text)
+    _, out, _ = check(here, "fanuc", "absolute")
+    assert "and 1 more (M21, M22)" in out
+
+
 def test_what_is_open_is_refused_with_its_place_and_only_where_it_is_needed(here: Path) -> None:
     file = 'format = 1\n[input]\ndialect = "fanuc"\nincrement = "?"\n[[pass]]\nuse = "absolute"\n'
     (here / "open.toml").write_text(file)

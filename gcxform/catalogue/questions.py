@@ -37,7 +37,7 @@ MEANINGS: Final[Mapping[Question, str]] = {
     ("input", "block-delete"): 'whether blocks with a slash run: "execute" or "skip"',
     ("input", "units"): 'units before the first G20 or G21: "mm" or "in"',
     ("input", "parameters"): "what a parameter is worth that the program reads and does not set",
-    ("control", "inert-m"): "which of these M codes move no axis and set no variable: [20, 21]",
+    ("control", "inert-m"): "which of these M codes move no axis and set no variable, as [20, 21]",
     ("control", "macro"): 'where axes are behind it: "unchanged", "unknown" or "at XYZ"',
     ("tool", "length"): "from the gauge point of the spindle to the tip, mm: what H calls",
     ("tool", "radius"): "mm: what D calls, half of it where the control has diameters",

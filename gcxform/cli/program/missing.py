@@ -95,6 +95,9 @@ class Missing:
             if lines and lines[0]:
                 more = f" and {len(lines) - 1} more" if len(lines) > 1 else ""
                 found |= dict.fromkeys(cause.asks, f"asked by line {lines[0]}{more}")
+        if codes := self.given.get(INERT):
+            named = ", ".join(f"M{each}" for each in codes)
+            found[INERT] = f"{found.get(INERT, '')} ({named})".strip()
         return found
 
     def told(self) -> list[Diagnostic]:
