@@ -75,6 +75,13 @@ def test_a_machine_file_says_what_is_needed_and_by_how_many(shop: Path) -> None:
     assert 'file = "m.toml"' in text
 
 
+def test_a_language_of_its_own_is_asked_for_the_lengths_that_it_calls(shop: Path) -> None:
+    """To the same control D1 stays as it stands, and says nothing of its length."""
+    (shop / "a.mpf").write_text("G710 G17 G90 G94 G54\nT5 M6\nD1\nG0 X0 Y0 Z5\nM30\n")
+    found = call("machine", "new", "-f", "siemens", "shop/a.mpf")
+    assert "[tool.5]" in found.stdout
+
+
 def test_filled_in_all_programs_go_through(shop: Path) -> None:
     call(*NEW)
     for program in ("pecks.nc", "start.nc"):

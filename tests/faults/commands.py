@@ -8,6 +8,13 @@ TIPS = "gcxform/view/tips.py"
 
 MUTATIONS = (
     Mutation(
+        "machine new: of a language of its own what is kept says no length",
+        "gcxform/cli/program/machine_needs.py",
+        "for stays in (False, True) if reading.stays else (False,):",
+        "for stays in (reading.stays,):",
+        "tests/test_machine_new.py",
+    ),
+    Mutation(
         "view: tips of axes are without their tool",
         TIPS,
         "x, y, z = (gauge - tool).tolist()",
@@ -178,8 +185,8 @@ MUTATIONS = (
     Mutation(
         "machine new: what called files use is not seen",
         "gcxform/cli/program/machine_needs.py",
-        "source = written_out(source, dialect, reading)",
-        "written_out(source, dialect, reading)",
+        "source = written_out(source, dialect, replace(reading, stays=stays))",
+        "written_out(source, dialect, replace(reading, stays=stays))",
         "tests/test_machine_new.py",
     ),
     Mutation(

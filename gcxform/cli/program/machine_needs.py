@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from contextlib import suppress
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Final
 
 import numpy as np
@@ -107,8 +107,10 @@ def used_by(source: Source, dialect: type[Dialect], reading: Reading) -> Used:
     """Return what a program uses of its machine, and what it calls, as far as that is written."""
     used = Used(dialect.initial["frame"])
     named = set("XYZ")
-    with suppress(InputError):  # as it stands, then
-        source = written_out(source, dialect, reading)
+    for stays in (False, True) if reading.stays else (False,):
+        with suppress(InputError):  # lines that are kept do not say what they use; or as it stands
+            source = written_out(source, dialect, replace(reading, stays=stays))
+            break
     for window, reader in windows_of(source, dialect):
         reader.table.update()
         for number in distinct(window.shape).tolist():
