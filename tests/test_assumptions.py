@@ -72,3 +72,28 @@ def test_run_warns_of_a_way_down(tmp_path: Path) -> None:
     found = call("run", "-f", "fanuc", "-x", "absolute", str(file), "-o", str(tmp_path / "o.nc"))
     assert found.exit_code == 0
     assert "3:1: warning[GX229]" in found.stderr
+
+
+@pytest.mark.parametrize(
+    ("body", "line"),
+    [
+        ("T0101\nG0 X30. Z2.\nG1 Z-20. F9.", 2),
+        ("G0 X30. Z2. (Y)\nG99 G1 Z-20. F9.", 3),
+        ("T0101 M6\nG0 X30. Z2.", 0),
+        ("T0101\nG43 H1\nG0 X30. Z2.", 0),
+        ("T0101\nG0 X30. Z2.\nG0 Y5.", 0),
+        ("T0101\nG0 Z2.", 0),
+        ("T101\nG0 X30. Z2.", 0),
+        ("G0 X30. Z2.\nG99 G81 Z-9. R2. F9.", 0),
+        ("(T0101 G99)\nG0 X30. Z2.", 0),
+    ],
+)
+def test_what_looks_like_a_lathe_is_warned_of(body: str, line: int) -> None:
+    found = assumed(f"G21 G90 G94\n{body}\nM30\n".encode(), "fanuc")
+    where = [each.where for each in found.warnings if each.code == "GX236"]
+    assert [each.line for each in where if each is not None] == ([line] if line else [])
+
+
+def test_a_control_of_mills_alone_is_not_asked_about_lathes() -> None:
+    found = assumed(b"G21 G90 G94\nT0101\nG0 X30. Z2.\nM30\n", "linuxcnc")
+    assert not found.warnings

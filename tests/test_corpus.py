@@ -28,7 +28,7 @@ PLACES = {"lddm": ROOT / "examples" / "lddm" / "model.toml"}
 LONGEST_PAGE = 60
 
 ELSEWHERE = {
-    "GX229": "test_assumptions.py",  # a warning
+    **dict.fromkeys(("GX229", "GX236"), "test_assumptions.py"),  # warnings
     "GX241": "test_stamps.py",
     "GX242": "test_stamps.py",
     "GX748": "test_hints.py",  # a warning

@@ -193,12 +193,16 @@ CODES: dict[str, tuple[str, str]] = {
     "GX235": (
         "In which unit the program begins is not known",
         "On this control a setting says whether programs begin in millimetres or in inches, and "
-        "this one has lengths before G20 or G21. Where its words stay as they are, that is all "
-        "the same. For another control, and with G21 written at its head, a guess would make the "
-        "part 25.4 times as large or as small: it is refused. Where an error is taken off its "
-        "positions, or moves are cut to a length, these are taken for mm, with a warning. Say "
-        '`units = "mm"` or `units = "in"` in [input], as the setting stands on the machine that '
-        "the program is for, or write G21 or G20 at its beginning.",
+        "this one has lengths before G20 or G21. Where its words stay, that is all the same. For "
+        "another control, and with G21 at its head, a guess would make the part 25.4 times as "
+        "large or as small: refused. Where an error is taken off positions, or moves are cut, they "
+        'are taken for mm, with a warning. Say `units = "mm"` or `units = "in"` in [input], or '
+        "write G21 or G20 at the beginning.",
+    ),
+    "GX236": (
+        "A program that may be for a lathe",
+        "It has X and Z and no Y, and tools of four digits without M6, or G99, a feed per turn on "
+        "lathes. There X is a diameter. Such programs are not read: it is taken for one of a mill.",
     ),
     "GX240": (
         "A program that has been turned into commands already",
@@ -390,8 +394,7 @@ CODES: dict[str, tuple[str, str]] = {
     "GX351": (
         "A rounded contour leads the tool elsewhere",
         "Under G41 and G42 the control offsets the contour that it reads. To round a point of it "
-        "moves the centre of the tool by more: in the measure of both radii beside an arc, and by "
-        "the slant of a corner; or the tool no longer fits where it did by a hair. Write more "
-        "decimals, or put `cutter-comp` before: then the path of the centre is what is rounded.",
+        "moves its centre by more: beside an arc in the measure of both radii, and by the slant of "
+        "a corner; or the tool no longer fits. Write more decimals, or put `cutter-comp` before.",
     ),
 }

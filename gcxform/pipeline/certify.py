@@ -14,6 +14,7 @@ from gcxform.flow.straightened import located
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.pipeline.certificate import Certificate
+from gcxform.pipeline.lathe_doubt import lathe_doubts
 from gcxform.pipeline.output import Output
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Run
@@ -156,6 +157,7 @@ def _not_checked(run: Run, certificate: Certificate) -> None:
     chosen = (*run.assumed, *told, *run.stages.emitter.assumed, *run.books.sentences, *taken)
     certificate.assumed += assumptions(run.stages.interpreter, run.plan.source, chosen)
     certificate.warnings += warnings_of(run.stages.interpreter, run.source)
+    certificate.warnings += lathe_doubts(run.given, run.plan.source)
 
 
 def assumptions(

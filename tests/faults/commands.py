@@ -8,6 +8,27 @@ TIPS = "gcxform/view/tips.py"
 
 MUTATIONS = (
     Mutation(
+        "lathe: a tool length makes no mill",
+        "gcxform/pipeline/lathe_doubt.py",
+        "(?:43|44|17)",
+        "(?:44|17)",
+        "tests/test_assumptions.py",
+    ),
+    Mutation(
+        "lathe: comments are read",
+        "gcxform/pipeline/lathe_doubt.py",
+        'lambda comment: b" " * len(comment[0])',
+        "lambda comment: comment[0]",
+        "tests/test_assumptions.py",
+    ),
+    Mutation(
+        "lathe: the return of a cycle is a feed per turn",
+        "gcxform/pipeline/lathe_doubt.py",
+        'if not (holes and what == "G99")',
+        "if what",
+        "tests/test_assumptions.py",
+    ),
+    Mutation(
         "machine new: of a language of its own what is kept says no length",
         "gcxform/cli/program/machine_needs.py",
         "for stays in (False, True) if reading.stays else (False,):",
