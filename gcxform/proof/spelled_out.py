@@ -28,14 +28,20 @@ from gcxform.toolpath.path import Event, Form, Kind, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 LENGTH = "the length of a tool counts from its change on, and here it should not"
+LOST = "what is known of where axes stand"
+LATE = "a work offset is named behind moves, and which one these count from is not known"
+NAMED = "name it in front of the first move, if it is the one that they count from"
 CALLED = "call it by G43 H in the block behind the change; or say in the machine file that it is 0"
+OPEN = {LENGTH: CALLED, LATE: NAMED}
+"""What a language cannot say, and no fault: with the way out."""
 NEAR = 1e-5  # mm: far below what rounding does
 ANGLE = 2e-4 * np.pi / 180  # rad: what rounding the angle of a helix does
 ROUND = 4e-4  # mm: so far a centre with the decimals of the control may lead beside an end
 SHORT = 8  # times, of a chord that is not shorter than an eighth of the radius
 SAME = ("kind", "feed_mode", "form", "side")
 ENDS = ("M2", "M30")
-COUNTS = ("tool-length", "frame")
+OFFSETS = "frame"
+COUNTS = ("tool-length", OFFSETS)
 """Groups of codes that say how words count. Between two moves it does not matter when they do, or
 how often they are stated, and a move in coordinates of the machine does without them."""
 MACHINE = "machine"
@@ -67,10 +73,10 @@ def check_spelled_out(
         line = found.line_of(int(now.source[row]) + 1) if row < len(now) else len(found.lines)
         text = found.lines[line - 1]
         where = Location(found.name, line, 1, text, max(1, len(text)))
-        code, hint = ("GX501", CALLED) if what is LENGTH else ("GX601", HINT)
-        message = what if what is LENGTH else f"what was written is another program: {what}"
-        kind = InputError if what is LENGTH else VerificationError
-        raise kind((Diagnostic(code, message, where, hint),))
+        if what in OPEN:
+            raise InputError((Diagnostic("GX501", what, where, OPEN[what]),))
+        message = f"what was written is another program: {what}"
+        raise VerificationError((Diagnostic("GX601", message, where, HINT),))
 
 
 def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> Toolpath:
@@ -96,7 +102,9 @@ def _differences(
         yield from _first(getattr(a, name) != getattr(b, name), name)
     alone = (frames[0] != frames[1]) & ~counts  # no word of these rows is along the tool
     alone[_led_by_the_machine(a, b, dialect, one, other)] = True
-    yield from _first(_lost(a, b, alone), "what is known of where axes stand")
+    lost = np.flatnonzero(_lost(a, b, alone))[:1]
+    late = {e.row for e in a.events if _group(e, dialect) == OFFSETS and e.row}
+    yield from ((row, LATE if row in late else LOST) for row in lost.tolist())
     cuts = a.kind != Kind.RAPID
     yield from _first(cuts & ~_same(a.feed, b.feed, 1e-6 * np.abs(a.feed)), "feed")
     near = NEAR + np.maximum.accumulate(_slack(a)) if len(a) else np.zeros(0)
@@ -104,7 +112,9 @@ def _differences(
     same[alone, ALONG] = True
     yield from _first(~same.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
-    yield from _first(~_same(a.centre, b.centre, beside[:, None]).all(axis=1), "a centre")
+    about = _same(a.centre, b.centre, beside[:, None])
+    about[alone, ALONG] = True
+    yield from _first(~about.all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")
     yield from _first(counts, "a work offset, or a length")
@@ -183,18 +193,19 @@ def _led_by_the_machine(
     """Return the rows in which one path alone knows where the tool stands along itself.
 
     A move in the machine has led there in both (`_places` compares them), under a length that
-    nobody has said in one of them alone. It stands there until a block names that axis again.
+    nobody has said in one of them alone; or it names other axes, and the tool stands where it stood
+    in both. It stands there until a block names that axis again.
     """
     found: list[int] = []
     open_ = np.isnan(a.end[:, ALONG]) != np.isnan(b.end[:, ALONG])
     both = {row for row, _ in _machine(a, dialect)} & {row for row, _ in _machine(b, dialect)}
     for row in sorted(both) if open_.any() else ():
-        led, named = row, a.axes[ALONG] in _words(one[a.source[row]])
-        while named and led < len(a) and open_[led]:
+        led, left = row, False
+        while led < len(a) and open_[led] and not left:
             found.append(led)
             led += 1
             words = (one[a.source[led]], other[b.source[led]]) if led < len(a) else ()
-            named = not any(a.axes[ALONG] in _words(each) for each in words)
+            left = any(a.axes[ALONG] in _words(each) for each in words)
     return found
 
 

@@ -16,6 +16,27 @@ def _feeds(name: str, old: str) -> Mutation:
 
 
 MUTATIONS = (
+    Mutation(
+        "spelled out: a move of other axes in the machine leaves the tool nowhere",
+        "gcxform/proof/spelled_out.py",
+        "led, left = row, False",
+        "led, left = row, a.axes[ALONG] not in _words(one[a.source[row]])",
+        "tests/test_corpus.py::test_case[dialects/across/machine-move-length-open]",
+    ),
+    Mutation(
+        "spelled out: a centre counts along the tool where only one path knows it",
+        "gcxform/proof/spelled_out.py",
+        "    about[alone, ALONG] = True\n",
+        "",
+        "tests/test_corpus.py::test_case[dialects/across/machine-move-length-open]",
+    ),
+    Mutation(
+        "spelled out: a work offset that is named late is a fault",
+        "gcxform/proof/spelled_out.py",
+        "LATE if row in late else LOST",
+        "LOST",
+        "tests/test_corpus.py::test_case[dialects/across/offset-named-late-for-klartext]",
+    ),
     _verifier("the budget is ignored", "if not distance[worst] <= self.budget:"),
     _verifier(
         "rotary axes are ignored", "None if angle[turned] <= self.angle_budget else turned", "None"

@@ -637,8 +637,8 @@ MUTATIONS = (
     Mutation(
         "written in a language: a place is known in both behind a move in the machine",
         SPELLED,
-        "        while named and led < len(a) and open_[led]:\n",
-        "        while False and led < len(a) and open_[led]:\n",
+        "        while led < len(a) and open_[led] and not left:\n",
+        "        while led < 0:\n",
         "tests/test_corpus.py::test_case[dialects/across/machine-place-length-open]",
     ),
     Mutation(
