@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gcxform.catalogue.unread import unread
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.signs import foreign_lines, has_signs
 from gcxform.modal.meaning.meaning import Meaning
@@ -48,11 +49,13 @@ class Evidence:
 class Guess:
     """The dialects a program may be in, the best guess first; none if no known dialect fits.
 
-    `evidence` by dialect, of all that were tried.
+    `evidence` by dialect, of all that were tried; `unread` names a control that is not read and
+    looks like some of them.
     """
 
     dialects: tuple[str, ...]
     evidence: Mapping[str, tuple[Evidence, ...]]
+    unread: str = ""
 
     def score(self, dialect: str) -> float:
         """Return the sum of the weights of a dialect."""
@@ -60,6 +63,8 @@ class Guess:
 
     def __str__(self) -> str:
         """Return the guess in words, with what speaks for it."""
+        if self.unread:
+            return f"none of the known dialects: it is for {self.unread}, which is not read"
         if not self.dialects:
             return "none of the known dialects"
         reasons = [e.what for e in self.evidence[self.dialects[0]] if e.weight > 0]
@@ -110,6 +115,8 @@ def guess_dialect(
     near = [n for n in scores if n not in kin or scores[n] >= others + ALIKE]
     best = max((scores[name] for name in near), default=0.0)
     chosen = [name for name in near if scores[name] > best - ALIKE]
+    if choice and (other := unread(head)):
+        return Guess((), look.found, other)
     return Guess(tuple(sorted(chosen, key=lambda name: (-scores[name], name))), look.found)
 
 

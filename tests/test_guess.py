@@ -105,3 +105,23 @@ def test_languages_of_their_own_are_told_with_certainty(dialect: str) -> None:
         if row["dialect"] == dialect and Path(row["path"]).name not in ALIKE:
             guessed = gx.guess_dialect(BESIDE / row["path"]).dialects
             assert guessed == (OURS.get(dialect, dialect),), row["path"]
+
+
+@pytest.mark.parametrize(
+    ("text", "unread"),
+    [
+        (b"%POCKET,MX,--\nN10 G90 G17\nN20 G0 X0 Y0 Z50\nN30 M30\n", "a Fagor 8055"),
+        (b"%A PART,MX--\nG0 X1. Y2.\nM30\n", "a Fagor 8055"),
+        (b"%\nO1 (A, MX)\nG0 X1. Y2.\nM30\n%\n", ""),
+        (b"%PART\nG0 X1. Y2.\nM30\n", ""),
+        (b"%\nN1 M6 T1\nN2 G0 G90 S5000 M3 E1 X0 Y0\nN3 H1 Z.1 M8\nM2\n", "a Fadal"),
+        (b"%\nO1\nS500 M3 (E1)\nG0 X1. Y2.\nM30\n%\n", ""),
+        (b"M104 S200\nG1 X1 Y2 E1 F600\n", ""),
+        (b"M3\nE1\nG0 X1. Y2.\nM30\n", ""),
+    ],
+)
+def test_a_control_that_is_not_read_is_named(text: bytes, unread: str) -> None:
+    guess = gx.guess_dialect(text)
+    assert guess.unread == unread
+    assert not (unread and guess.dialects)
+    assert unread in str(guess)

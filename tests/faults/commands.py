@@ -8,6 +8,20 @@ TIPS = "gcxform/view/tips.py"
 
 MUTATIONS = (
     Mutation(
+        "guess: E behind a comment is one of a Fadal",
+        "gcxform/catalogue/unread.py",
+        r"^[^;(\r\n]*(?<![A-Z])M[ \t]*0?[34][ \t]*E",
+        r"^[^;\r\n]*(?<![A-Z])M[ \t]*0?[34][ \t]*.?E",
+        "tests/test_guess.py::test_a_control_that_is_not_read_is_named",
+    ),
+    Mutation(
+        "guess: a control that is not read is one of those that are",
+        "gcxform/guess.py",
+        "if choice and (other := unread(head)):",
+        "if not choice and (other := unread(head)):",
+        "tests/test_guess.py::test_a_control_that_is_not_read_is_named",
+    ),
+    Mutation(
         "lathe: a tool length makes no mill",
         "gcxform/pipeline/lathe_doubt.py",
         "(?:43|44|17)",
