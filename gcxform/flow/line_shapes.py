@@ -205,6 +205,11 @@ class LineShapes(ABC):
         of = {name: [k for p, r in roles if r == name for k in p.slots] for name in (CODE, DIGITS)}
         return Slots(tuple(of[CODE]), tuple(of[DIGITS]))
 
+    def take_for(self, line: int, text: str) -> None:
+        """Take a line for another text; it stands where it stands as it is."""
+        self.lines[line] = text
+        self._parts_ahead.clear()
+
     def items_in(self, text: str) -> tuple[Item, ...]:
         """Return the items of a text that stands for the line. Raises InputError."""
         shape, numbers = self.shape(self.line, text)

@@ -24,7 +24,7 @@ from gcxform.modal.state import Reading
 from gcxform.syntax.source import Source
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Frame
-from gcxform.toolpath.path import Event, Form, Kind, Toolpath
+from gcxform.toolpath.path import Event, Form, Kind, Plane, Toolpath
 
 HINT = "nothing was written; let a pass write it in another way, or write for another dialect"
 LENGTH = "the length of a tool counts from its change on, and here it should not"
@@ -113,7 +113,7 @@ def _differences(
     yield from _first(~same.all(axis=1), "an end")
     beside = near + np.minimum(_off(a) * _way(a), dialect.arc_rule.absolute)
     about = _same(a.centre, b.centre, beside[:, None])
-    about[alone, ALONG] = True
+    about[alone & (a.plane == Plane.XY) & (b.plane == Plane.XY), ALONG] = True
     yield from _first(~about.all(axis=1), "a centre")
     yield from _first((a.side != 0) & ~_same(a.radius, b.radius, 0.0), "the radius of a tool")
     yield from _first(np.abs(a.sweep - b.sweep) > ANGLE + 1e-3, "a turn")

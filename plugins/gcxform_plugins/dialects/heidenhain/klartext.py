@@ -32,6 +32,7 @@ ONE_LINE = re.compile(
     r"[\s\d/]*(?:[;*]|(?:L|LP|C|CC|CP|CR|CT|RND|CHF|APPR|DEP|M|STOP|TOOL)(?![A-Z]))", re.IGNORECASE
 )
 """Statements that are read from one line."""
+COMMENT = re.compile(r"[\s\d]*;")
 UNNUMBERED = re.compile(r"\s*[^\s\d;]")
 LBL_0 = "write LBL 0 where it ends, behind what it does"
 LONGEST_TOOL = 9  # digits
@@ -143,15 +144,26 @@ class Klartext(Cycles):
     def _check_continued(self) -> None:
         """Refuse a line without a number behind `~` of which it is not certain what it is.
 
-        It may be a part of the comment before it, or words. Raises InputError.
+        It may be a part of the comment before it, or words: where it can be no words it is taken
+        for the former. Raises InputError.
         """
         lines = self.lines
         for k in [k for k in range(self.line, len(lines) - 1) if "~" in lines[k]]:
             if goes_on(lines[k]) and ONE_LINE.match(lines[k]) and UNNUMBERED.match(lines[k + 1]):
+                if COMMENT.match(lines[k]) and self._says_nothing(lines[k + 1]):
+                    self.take_for(k + 1, f";{lines[k + 1]}")
+                    continue
                 message = "this line goes on with the one before it, which ends in ~"
                 hint = "take ~ away, or make one line of both"
                 place = 0, len(lines[k + 1])
                 raise self.error_at(k + 1, "GX210", message, place, hint)
+
+    def _says_nothing(self, text: str) -> bool:
+        """Whether a line is no statement."""
+        try:
+            return all(item.kind == "outside" for item in self.items_in(text))
+        except gx.InputError:
+            return True
 
     def _end(self, item: gx.Item) -> list[str]:
         match = END.fullmatch(item.name)
