@@ -39,8 +39,7 @@ def spelled_out(
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
     speller.inert, speller.asides = inert, asides
-    lines, of = speller.opening(), [source[0] if source else 0]
-    of *= len(lines)
+    lines, of = list[str](), list[int]()
     for block, line in zip(blocks, source, strict=True):
         text = block.decode("latin-1").rstrip("\r\n")
         try:
@@ -50,7 +49,8 @@ def spelled_out(
             raise InputError((Diagnostic("GX501", str(why), where, why.hint or HINT),)) from None
         lines += said
         of += [line] * len(said)
-    both = [*speller.gathered([*zip(lines, of, strict=True)])]
+    begins = [(line, source[0] if source else 0) for line in speller.opening()]
+    both = [*begins, *speller.gathered([*zip(lines, of, strict=True)])]
     lines, of = [line for line, _ in both], [line for _, line in both]
     ends = [*(speller.lines(f"({OPEN_SEAL})") if seals else ()), *speller.closing()]
     lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]

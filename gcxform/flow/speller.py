@@ -76,7 +76,7 @@ class Speller(ABC):
         """Forget where the axes stand: something was executed that is not said here."""
 
     def opening(self) -> list[str]:
-        """Return the lines before the first block."""
+        """Return the lines before the first block, when all blocks have been said."""
         return []
 
     def closing(self) -> list[str]:

@@ -122,6 +122,13 @@ MUTATIONS = (
         f"{COMPENSATED}-rounds-a-corner]",
     ),
     Mutation(
+        "klartext: a compensated program has another name",
+        LINES,
+        "self.name = asides.pop(0).removeprefix(BEGIN_PGM)",
+        "asides.pop(0)",
+        f"{COMPENSATED}-by-name]",
+    ),
+    Mutation(
         "languages: a tool is called by a number that was made up",
         "gcxform/flow/speller.py",
         'self.tool_name = next((each[1:] for each in asides if each.startswith(NAMED)), "")',

@@ -26,7 +26,7 @@ MUTATIONS = (
     Mutation(
         "spelled out: a centre counts along the tool where only one path knows it",
         "gcxform/proof/spelled_out.py",
-        "    about[alone, ALONG] = True\n",
+        "    about[alone & (a.plane == Plane.XY) & (b.plane == Plane.XY), ALONG] = True\n",
         "",
         "tests/test_corpus.py::test_case[dialects/across/machine-move-length-open]",
     ),

@@ -11,11 +11,13 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import AUTO, Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.lines import BEGIN_PGM
 from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
 from gcxform_plugins.dialects.heidenhain.words import MM, exact, goes_on, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
+OWN_NAME = re.compile(r"BEGIN\s+PGM\s+([^\s;]+)\s+(?:MM|INCH)", re.IGNORECASE)
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
 TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
 FETCHED = re.compile(r'TOOL\s+DEF\s*"([^"]*)"\s*$', re.IGNORECASE)
@@ -139,7 +141,9 @@ class Klartext(Cycles):
         for axis, value in self.reading.start.items():
             scale = MM if self.inch and axis not in "ABC" else 1.0
             self.place[axis] = exact(Decimal(repr(value / scale)))
-        return [f"{'G20' if self.inch else 'G21'} G17 G90 G94"]
+        own = OWN_NAME.search(self.lines[self.line])
+        name = self.along(f"{BEGIN_PGM}{own[1]}") if own else []
+        return [" ".join([f"{'G20' if self.inch else 'G21'} G17 G90 G94", *name])]
 
     def _check_continued(self) -> None:
         """Refuse a line without a number behind `~` of which it is not certain what it is.

@@ -16,6 +16,7 @@ from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetc
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.words import exact
 
+BEGIN_PGM = "BEGIN PGM "
 GOES_ON = "~ "
 """What ends a line that the next one goes on with, behind a comment too; and blanks."""
 AXES = "XYZABCUVW"
@@ -59,7 +60,7 @@ class Lines(gx.Speller):
 
     def opening(self) -> list[str]:
         """Return the first line."""
-        return [f"BEGIN PGM {self.name} {self.unit}"]
+        return [f"{BEGIN_PGM}{self.name} {self.unit}"]
 
     def closing(self) -> list[str]:
         """Return the last line."""
@@ -84,6 +85,8 @@ class Lines(gx.Speller):
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         asides, comments, words = self.heard(block)
+        if asides and asides[0].startswith(BEGIN_PGM):
+            self.name = asides.pop(0).removeprefix(BEGIN_PGM)
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
         codes = [_code(*each) for each in words if each[0] in "GM"]
