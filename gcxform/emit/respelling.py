@@ -27,7 +27,6 @@ WHY = {
     "METRIC": "its lengths are inches",
     "LINEAR_ONLY": "it may lead along an arc",
     "XY_ARCS": "it may lead along an arc",
-    "NO_CUTTER_COMP": "cutter compensation begins in it",
 }
 """What is wrong with a line that has what is against a fact."""
 

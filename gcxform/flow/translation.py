@@ -59,7 +59,7 @@ class Translator(LineShapes):
     """What stands in each line that `counts`; without it all are asked."""
     against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
     """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
-    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS, compensation by NO_CUTTER_COMP."""
+    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 

@@ -66,11 +66,13 @@ def target_of(plan: Plan) -> type[Dialect]:
 def writes_back(plan: Plan) -> bool:
     """Whether a program in a language of its own is written in that language line by line.
 
-    Its lines are spelled anew where their blocks have changed, so no pass may change text, or
-    positions.
+    Its lines are spelled anew where their blocks have changed, so no pass may change text,
+    positions, or whose path it is: contours that are resolved have other moves.
     """
     same = plan.source is plan.target and getattr(plan.source.translator, "writes", False)
-    return same and not plan.text_passes and stamp_of(plan.passes, plan.context, plan.words) is None
+    if not same or plan.text_passes or any(step.demands.resolves for step in plan.passes):
+        return False
+    return stamp_of(plan.passes, plan.context, plan.words) is None
 
 
 def _spells_out(plan: Plan) -> bool:

@@ -1154,11 +1154,11 @@ MUTATIONS = (
         f"{CASES}[dialects/siemens/segment-of-a-kept-text]",
     ),
     Mutation(
-        "siemens: compensation that stands as it does is computed",
-        EFFECTS,
-        '    "NO_CUTTER_COMP": re',
-        '    "COMP": re',
-        f"{CASES}[dialects/siemens/cutter-comp-of-kept-sides]",
+        "siemens: lines of a contour that is resolved are written back one by one",
+        "gcxform/pipeline/own_language.py",
+        "any(step.demands.resolves for step in plan.passes)",
+        "False",
+        f"{CASES}[dialects/siemens/cutter-comp]",
     ),
     Mutation(
         "siemens: a line of another file is changed in silence",

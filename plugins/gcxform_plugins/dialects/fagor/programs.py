@@ -73,7 +73,6 @@ AGAINST = {
     "METRIC": re.compile(rf"{CODE}G[ \t]*0*70(?![0-9.])"),
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
-    "NO_CUTTER_COMP": re.compile(rf"{CODE}G[ \t]*0*4[12](?![0-9.])"),
 }
 
 

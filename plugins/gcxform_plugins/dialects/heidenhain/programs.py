@@ -46,7 +46,6 @@ ARCS = re.compile(
 AGAINST = {
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
-    "NO_CUTTER_COMP": re.compile(r"(?i)^[^;*]*?(?<![A-Z])R[LR](?![A-Z])"),
 }
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
 NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+[ \t]*)?")

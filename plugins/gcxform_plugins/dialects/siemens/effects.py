@@ -55,7 +55,6 @@ AGAINST = {
     "METRIC": re.compile(rf"{CODE}G[ \t]*0*700?(?![0-9.])"),
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
-    "NO_CUTTER_COMP": re.compile(rf"{CODE}G[ \t]*0*4[12](?![0-9.])"),
 }
 """Where these stand in a line that stays, a pass cannot do what it is for."""
 
