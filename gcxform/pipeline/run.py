@@ -218,9 +218,8 @@ class Run:
             reading = self.plan.reading_of_output(self.plan.machine_reading)
             structure.prove(folded, reading, self.account, self.findings)
         out.lines_in = structure.lines_read
-        text = folded.text
-        if not isinstance(structure, Structure):
-            text = structure.sealed(text)
+        whole = folded.text
+        text = whole if isinstance(structure, Structure) else structure.sealed(whole)
         out.put(*self.text.edit(text, list(folded.lines), True))
 
     def _proof(self, long: bool) -> Worker[Findings]:

@@ -133,7 +133,8 @@ def _words_of_codes(dialect: type[Dialect]) -> Complaints:
             lengths = "".join(a for a in code.takes if a in "PQ")
         if code.lengths != lengths:
             yield name, f"{name} has the lengths {code.lengths!r}; they are {lengths!r}"
-        bare = set(code.takes) & set(LINEAR + "IJK") - {*code.lengths, EXTRUDER}
+        own = LINEAR.replace(EXTRUDER, "") + "IJK" + ("E" if code.act == "look-ahead" else "")
+        bare = set(code.takes) & set(own) - {*code.lengths}
         if bare:
             yield name, f"{name} takes {sorted(bare)}, which are lengths, and does not say so"
 
