@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import seeds_kit
+from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.positioning import ROUNDS, SHORTEST, SILENT
 from heidenhain_kit import program
 from reference import heidenhain as klartext
@@ -150,9 +151,28 @@ def test_tools_that_are_made_up_are_several() -> None:
 
 def test_what_goes_along_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     heard = Speller.heard
-    monkeypatch.setattr(Speller, "heard", lambda *said: ([], *heard(*said)[1:]))
+
+    def misheard(*said: str) -> tuple[list[str], list[str], list[tuple[str, str]]]:
+        asides, comments, words = heard(*said)
+        return [each.replace("M126", "M127") for each in asides], comments, words
+
+    monkeypatch.setattr(Speller, "heard", misheard)
     with pytest.raises(gx.GcxformError, match="what goes along"):
         compensating(tmp_path).run(program("L X+1 Y+1 Z+1 FMAX", "M126").encode())
+
+
+def test_what_goes_along_has_its_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    gathered = Lines.gathered
+
+    def moved(self: Lines, lines: list[tuple[str, int]]) -> list[tuple[str, int]]:
+        found = [*gathered(self, lines)]
+        said = next(each for each in found if each[0] == "M126")
+        return [each for each in found if each != said] + [said]
+
+    monkeypatch.setattr(Lines, "gathered", moved)
+    text = program("L X+1 Y+1 Z+1 FMAX", "M126", "L X+2 F100")
+    with pytest.raises(gx.GcxformError, match="M9001 is M9001"):
+        compensating(tmp_path).run(text.encode())
 
 
 @pytest.mark.parametrize(("language", "text"), PROGRAMS.items())

@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: what goes along has no place between moves",
+        WORDS,
+        'return [f"{ALONG} {gx.Speller.aside(said)}"] if',
+        "return [gx.Speller.aside(said)] if",
+        f"{COMPENSATED}-joined]",
+    ),
+    Mutation(
         "klartext: CP out of XY turns in XY",
         POLAR,
         "radius, begin = hypot(x, y), self._angle(path, axes)",

@@ -92,7 +92,7 @@ class Klartext(Cycles):
         kind = first.kind
         if kind == "structure":
             if self.reading.asides:
-                return self.along()
+                return [gx.Speller.aside(self.statement)]
             words = self.lines[self.line].partition("*")[2].lstrip("* -")
             return [f"({words.strip().translate(BRACKETS)})"]
         if kind == "outside" and not self.begun:
@@ -322,7 +322,7 @@ class Klartext(Cycles):
         if said in (RESET, TCPM):
             self.refuse_beside(said, item)
             if said == RESET and not self.following and self.reading.asides:
-                return self.along()
+                return [gx.Speller.aside(self.statement)]
             return [*self.switch(said == TCPM)]
         why = next((why for words, why in OTHERWISE.items() if words in said), "")
         self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)

@@ -18,6 +18,8 @@ MM = 25.4  # of an inch
 COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
 HEAD = re.compile(r"[/\d \t]*")
 """What stands before a statement."""
+ALONG = "M9001"
+"""The code of a block that goes along as it was programmed."""
 STAYS = "`absolute`, which compensates nothing, leaves the line as it stands"
 UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
 
@@ -152,10 +154,16 @@ class Words(gx.Translator):
     def along(self, text: str = "") -> list[str]:
         """Return the block of what goes along where all is written anew for a TNC; else nothing.
 
-        Without a text that is the statement of this line, as it stands.
+        Without a text that is the statement of this line, as it stands. Its code makes it an event,
+        which moves keep their place by.
         """
-        said = text or HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip()
-        return [gx.Speller.aside(said)] if self.reading.asides else []
+        said = text or self.statement
+        return [f"{ALONG} {gx.Speller.aside(said)}"] if self.reading.asides else []
+
+    @property
+    def statement(self) -> str:
+        """The statement of this line, as it stands."""
+        return HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip()
 
     def check_along(self, what: str, item: gx.Item) -> None:
         """Refuse what does more than to move, and would be gone. Raises InputError."""
