@@ -50,6 +50,20 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: a compensated program keeps what one before it has shifted",
+        DATUMS,
+        "if axis not in LINEAR or not shifted]",
+        "if axis not in LINEAR and not shifted]",
+        f"{COMPENSATED}-resets]",
+    ),
+    Mutation(
+        "klartext: a compensated program keeps what one before it has turned",
+        DATUMS,
+        'return self.all_along(first, f"CYCL DEF {last}")',
+        "return []",
+        f"{COMPENSATED}-resets]",
+    ),
+    Mutation(
         "klartext: what goes along has no place between moves",
         WORDS,
         'return [f"{ALONG} {gx.Speller.aside(said)}"] if',

@@ -59,7 +59,10 @@ class Datums(Parameters):
         if not self.by_cycle and any(map(float, self.shift.values())):
             self.refuse("a datum shift by cycle 7 beside one by TRANS DATUM", item)
         self.by_cycle = True
-        return self._shifted(item, self.new_shift)
+        blocks = self._shifted(item, self.new_shift)
+        axes = enumerate(self._unshifted(self.new_shift, blocks), 1)
+        ends = [f"CYCL DEF 7.{number} {axis}+0" for number, axis in axes]
+        return [*blocks, *(self.all_along("CYCL DEF 7.0 DATUM SHIFT", *ends) if ends else ())]
 
     def _shifts(self, item: gx.Item, text: str) -> Iterator[tuple[str, str]]:
         """Yield axes with their shifts; `IX` adds to the one in force."""
@@ -107,6 +110,11 @@ class Datums(Parameters):
         self.shift, self.pole, self.polar, self.last = new, {}, None, None
         return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
 
+    def _unshifted(self, given: dict[str, str], blocks: list[str]) -> list[str]:
+        """Return the axes whose shift ends by what no block says: one from before the program."""
+        shifted = blocks or any(map(float, self.shift.values()))
+        return [axis for axis in given if axis not in LINEAR or not shifted]
+
     def _check_still(self, what: str, item: gx.Item) -> None:
         """Refuse to change the frame where more hangs on it. Raises InputError."""
         self.refuse_beside(what, item)
@@ -128,7 +136,7 @@ class Datums(Parameters):
         if found[1] and self.turn is not None:
             angle += self.turn
         if angle == self.turn:
-            return []
+            return [] if angle else self._unturned(item, "CYCL DEF 10.0 ROTATION", "10.1 ROT+0")
         self._check_still("a rotation", item)
         if self.mirrored:
             self.refuse("a rotation of mirrored coordinates: controls differ in the order", item)
@@ -147,7 +155,7 @@ class Datums(Parameters):
         if not set(axes) <= set(LINEAR) or len(set(axes)) != len(axes):
             self.refuse(f"a mirror image of {text}", item)
         if axes == self.mirrored:
-            return []
+            return [] if axes else self._unturned(item, "CYCL DEF 8.0 MIRROR IMAGE", "8.1")
         self._check_still("a mirror image", item)
         if self.turn:
             self.refuse("a mirror image in turned coordinates: controls differ in the order", item)
@@ -162,7 +170,14 @@ class Datums(Parameters):
         if part == 1 and (found is None or float(plain(found[1])) != 1.0):
             self.refuse("a scale: whether it is of all axes is a parameter of the machine", item)
         self.ends("a scale of 1", item)
-        return []
+        return self.along()
+
+    def _unturned(self, item: gx.Item, first: str, last: str) -> list[str]:
+        """Return what ends no rotation or mirror image of this program, but may one before it."""
+        found = TURNS.fullmatch(item.name)
+        if found is not None:
+            return self.along(f"TRANS {found[1]} RESET")
+        return self.all_along(first, f"CYCL DEF {last}")
 
     def _lose_frame(self, axes: str) -> None:
         self.lose(axes)
@@ -190,13 +205,15 @@ class Datums(Parameters):
             self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
         self.by_cycle = False
         if match[1] is None:
-            return self._shifted(item, dict.fromkeys(LINEAR, "0"))
+            return [*self._shifted(item, dict.fromkeys(LINEAR, "0")), *self.along()]
         given: dict[str, str] = {}
         for axis, number in self._shifts(item, match[1]):
             if axis in given:
                 raise self.refusal("GX203", f"{axis} stands in this shift twice", item)
             given[axis] = number
-        return self._shifted(item, given)
+        blocks = self._shifted(item, given)
+        ends = "".join(f" {axis}+0" for axis in self._unshifted(given, blocks))
+        return [*blocks, *(self.along(f"TRANS DATUM AXIS{ends}") if ends else ())]
 
     def preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
         """Cycle 247: the preset, if all of the program counts from it; once more it is the same."""

@@ -165,6 +165,10 @@ class Words(gx.Translator):
         """The statement of this line, as it stands."""
         return HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip()
 
+    def all_along(self, *texts: str) -> list[str]:
+        """Return the blocks of several statements that go along, each in a line of its own."""
+        return [block for text in texts for block in self.along(text)]
+
     def check_along(self, what: str, item: gx.Item) -> None:
         """Refuse what does more than to move, and would be gone. Raises InputError."""
         if self.reading.asides:
