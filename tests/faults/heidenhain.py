@@ -71,6 +71,20 @@ MUTATIONS = (
         f"{COMPENSATED}-joined]",
     ),
     Mutation(
+        "klartext: a compensated program no more reads into a parameter that outlives it",
+        PARAMETERS,
+        'if name.startswith("QR"):',
+        "if not name:",
+        f"{COMPENSATED}-keeps-a-parameter]",
+    ),
+    Mutation(
+        "klartext: a compensated program draws half a blank",
+        PROGRAM,
+        "near = self.lines[max(self.line - 1, 0) : self.line + 2]",
+        "near = self.lines[self.line : self.line + 1]",
+        f"{COMPENSATED}-blank]",
+    ),
+    Mutation(
         "klartext: CP out of XY turns in XY",
         POLAR,
         "radius, begin = hypot(x, y), self._angle(path, axes)",

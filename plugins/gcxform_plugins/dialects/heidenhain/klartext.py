@@ -21,6 +21,8 @@ OWN_NAME = re.compile(r"BEGIN\s+PGM\s+([^\s;]+)\s+(?:MM|INCH)", re.IGNORECASE)
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
 TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
 FETCHED = re.compile(r'TOOL\s+DEF\s*"([^"]*)"\s*$', re.IGNORECASE)
+BLANK = re.compile(r"[\s\d/]*BLK(?![A-Z])", re.IGNORECASE)
+OPEN = re.compile(rf"{NAMED.pattern}|(?<![A-Z])LBL(?![A-Z])")
 FIRST_WORD = re.compile(r"TOOL|[A-Z]+")
 TCPM = "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"
 RESET = "FUNCTION RESET TCPM"
@@ -182,8 +184,13 @@ class Klartext(Cycles):
         return ["M2"]
 
     def _blank(self, item: gx.Item) -> list[str]:
-        """BLK FORM: the blank, which is only drawn; parameters are worth nothing in what is new."""
-        return [] if NAMED.search(item.name) else self.along()
+        """BLK FORM: the blank, which is only drawn: not by parameters and labels, which are gone.
+
+        Its two corners stand in two lines.
+        """
+        near = self.lines[max(self.line - 1, 0) : self.line + 2]
+        open_ = any(BLANK.match(each) and OPEN.search(each.upper()) for each in near)
+        return [] if open_ else self.along()
 
     def stop(self, items: Sequence[gx.Item]) -> list[str]:
         """STOP: the program waits."""
@@ -322,7 +329,7 @@ class Klartext(Cycles):
         if said in (RESET, TCPM):
             self.refuse_beside(said, item)
             if said == RESET and not self.following and self.reading.asides:
-                return [gx.Speller.aside(self.statement)]
+                return self.along()
             return [*self.switch(said == TCPM)]
         why = next((why for words, why in OTHERWISE.items() if words in said), "")
         self.refuse(f"{said} is not resolved" + (f": {why}" if why else ""), item)

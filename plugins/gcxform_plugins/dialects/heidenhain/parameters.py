@@ -23,6 +23,7 @@ from gcxform_plugins.dialects.heidenhain.words import written
 
 FN = re.compile(r"FN\s*(\d{1,2})\s*:\s*(.*?)\s*", re.IGNORECASE)
 NAMED = re.compile(r"(?<![A-Z0-9])Q[LR]?\s*\d+")
+ANY = re.compile(r"(?<![A-Z0-9])Q[LRS]?\s*\d")
 TEXTS = re.compile(r"QS\s*\d+|TOCHAR|TONUMB|SUBSTR|STRLEN|STRCOMP|INSTR|SYSSTR|CFGREAD|DEFINED")
 JUMPS = {9: "EQU", 10: "NE", 11: "GT", 12: "LT"}
 SETS = {0: "", 1: "+", 2: "-", 3: "*", 4: "DIV", 5: "SQRT", 6: "SIN", 7: "COS", 8: "LEN", 13: "ANG"}
@@ -100,7 +101,7 @@ class Parameters(Labels):
             node: Any = self.grammar_of_formulas.parse(item.name).children[0]
         except UnexpectedInput:
             if TEXTS.search(item.name):
-                self._forget(item.name)
+                self._forget(item.name, item)
                 return []
             raise self.refusal("GX101", f"{item.name.strip()[:40]} is no formula", item) from None
         try:
@@ -162,19 +163,21 @@ class Parameters(Labels):
             if number == WRITES:
                 self.check_along("FN 27 writes into a table", item)
             self.computes = True
-            self._forget(text)
+            self._forget(text, item)
             return []
         if number in PRINTS:
-            if number != 15 or NAMED.search(text.upper()):
+            if number != 15 or ANY.search(text.upper()):
                 self.check_along(f"FN {number} tells of parameters", item)
             if self.reading.asides:
                 return self.along()
             return [f"(FN {number} {text.translate(BRACKETS)})"]
         self.refuse(WHY.get(number, f"FN {number} is not resolved"), item)
 
-    def _forget(self, text: str) -> None:
-        """Forget the first parameter that a text names: it is the one that is set."""
+    def _forget(self, text: str, item: gx.Item) -> None:
+        """Forget the first parameter that a text names, which is set. Raises InputError."""
         for name in NAMED.findall(text.upper())[:1]:
+            if name.startswith("QR"):
+                self.check_along(f"{key_of(name)}, which outlives the program", item)
             self.assigned(key_of(name))
             self.q[key_of(name)] = None
 

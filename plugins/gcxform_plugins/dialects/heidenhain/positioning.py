@@ -18,6 +18,7 @@ LEAVES_SPINDLE = frozenset({1, 7, 8, 9, 91, 99, 126, 127, 128, 129})
 TELLS_SPINDLE = frozenset({0, 2, 3, 4, 5, 6, 13, 14, 30})
 LONGEST_M = 4  # digits
 MACHINE = 91
+CHANGES = 6
 NEVER_BESIDE = (6, 91, 128, 129)
 SHORTEST = frozenset({126, 127})
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
@@ -144,6 +145,8 @@ class Saying(Words):
         self.untold &= code not in TELLS_SPINDLE
         if code in NEVER_BESIDE:
             self.refuse_beside(f"M{code}", item)
+        if code == CHANGES:
+            self.check_along("M6, which changes the tool as the machine's builder has it", item)
         if code == MACHINE:
             said.machine = item
         elif code == CALLS:
@@ -153,7 +156,7 @@ class Saying(Words):
         elif code in AT_END:
             said.after += AT_END[code] if code != 129 else self._not_following()
             said.leaves |= code == 129
-            said.changes |= code == 6
+            said.changes |= code == CHANGES
         elif code in SHORTEST:
             self.shortest = code == 126
             said.before += self.along(f"M{code}")
