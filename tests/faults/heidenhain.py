@@ -85,6 +85,20 @@ MUTATIONS = (
         f"{COMPENSATED}-blank]",
     ),
     Mutation(
+        "klartext: two speeds are said in one line",
+        "plugins/gcxform_plugins/dialects/heidenhain/fetching.py",
+        "            waits = None\n            continue",
+        "            waits = waits[0], of\n            continue",
+        f"{COMPENSATED}-speeds]",
+    ),
+    Mutation(
+        "klartext: a tap is along the axis of the circle before it",
+        CYCLES,
+        """tap = f"{self.in_plane('G17')}G33.1""",
+        'tap = f"G33.1',
+        f"{CASE}tap-behind-an-arc]",
+    ),
+    Mutation(
         "klartext: CP out of XY turns in XY",
         POLAR,
         "radius, begin = hypot(x, y), self._angle(path, axes)",

@@ -273,7 +273,8 @@ class Cycles(Datums):
         self.at, self.untold = self.at + (again is not None), again is None
         up = exact(surface + clear)
         over = [] if self.place.get("Z") == up else [f"G0 Z{up}"]
-        blocks = [*over, f"G33.1 Z{exact(surface + depth)} K{exact(abs(pitch))}"]
+        tap = f"{self.in_plane('G17')}G33.1 Z{exact(surface + depth)} K{exact(abs(pitch))}"
+        blocks = [*over, tap]
         out = self._out(blocks, exact(surface + high) if high else up)
         if high > clear:
             return out

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-CALLED = re.compile(r'TOOL CALL (?:[0-9]+|"[^"]*") Z')
-SPEED = "TOOL CALL Z"
+CALLED = re.compile(r'(TOOL CALL (?:[0-9]+|"[^"]*") Z)( ;.*)?')
+SPEED = re.compile(r"TOOL CALL Z( S[^;]+)")
 
 
 def fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
@@ -23,15 +23,15 @@ def fetched_ahead(lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
 
 def called_with_speed(lines: Iterable[tuple[str, int]]) -> Iterator[tuple[str, int]]:
     """Yield lines with the speed in the TOOL CALL of the tool, where one follows upon the other."""
-    called: tuple[str, int] | None = None
+    waits: tuple[str, int] | None = None
     for line, of in lines:
-        if called is not None and line.startswith(SPEED):
-            called = f"{called[0]}{line.removeprefix(SPEED)}", called[1]
+        speed, called = SPEED.fullmatch(line), CALLED.fullmatch(waits[0]) if waits else None
+        if waits and called and speed:
+            yield f"{called[1]}{speed[1]}{called[2] or ''}", waits[1]
+            waits = None
             continue
-        if called is not None:
-            yield called
-        called = (line, of) if CALLED.fullmatch(line) else None
-        if called is None:
-            yield line, of
-    if called is not None:
-        yield called
+        if waits:
+            yield waits
+        waits = line, of
+    if waits:
+        yield waits
