@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: lines in a run cut behind a tap, whether the spindle turns or not",
+        RUNS,
+        "([] if self.feed_lost or self.untold else",
+        "([] if self.feed_lost else",
+        f"{CASE}tap-then-lines]",
+    ),
+    Mutation(
         "klartext: a compensated program keeps what one before it has shifted",
         DATUMS,
         "if axis not in LINEAR or not shifted]",

@@ -84,7 +84,7 @@ class Runs(Klartext):
         if self._hangs_on_more(rapid):
             return []
         self._look_ahead()
-        return self._alike(rapid) or ([] if self.feed_lost else self._mixed())
+        return self._alike(rapid) or ([] if self.feed_lost or self.untold else self._mixed())
 
     def _look_ahead(self) -> None:
         """Come to know the shapes of the next lines, or a run of them would begin too late."""
@@ -180,7 +180,7 @@ class Runs(Klartext):
     def _hangs_on_more(self, rapid: bool) -> bool:
         """Whether lines are translated by more than what they say."""
         beside = not self.begun or self.over or self.begins is not None
-        return beside or (self.feed_lost and not rapid)
+        return beside or ((self.feed_lost or self.untold) and not rapid)
 
     def _take(self, blocks: str) -> None:
         """Take note of where blocks lead, and how fast."""
