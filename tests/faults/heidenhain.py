@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: M140 in inches leads beyond the end of travel",
+        MOVES,
+        "Decimal(1).scaleb(-decimals), ROUND_FLOOR",
+        "Decimal(1).scaleb(-decimals)",
+        f"{CASE}end-of-travel-inch]",
+    ),
+    Mutation(
         "klartext: lines in a run cut behind a tap, whether the spindle turns or not",
         RUNS,
         "([] if self.feed_lost or self.untold else",

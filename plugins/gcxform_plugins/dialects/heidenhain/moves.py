@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from decimal import Decimal
+from decimal import ROUND_FLOOR, Decimal
 from math import nan
 
 import gcxform as gx
@@ -176,7 +176,14 @@ class Moves(Saying):
             self.refuse("M140 while the control follows the tip", item, "write M129 before")
         self.lose("XYZ" if self.turn != 0 or self.mirrored != "" else "Z")
         self.motion = "G0"
-        return [f"G53 G0 Z{exact(Decimal(repr(place / (MM if self.inch else 1.0))))}"]
+        return [f"G53 G0 Z{self._within(Decimal(repr(place)))}"]
+
+    def _within(self, place: Decimal) -> str:
+        """Return an upper end of travel (mm) in the unit of the program, and not beyond it."""
+        numbers = self.dialect.numbers
+        decimals, unit = (numbers.inch, MM) if self.inch else (numbers.mm, 1.0)
+        end = place / Decimal(str(unit))
+        return exact(end.quantize(Decimal(1).scaleb(-decimals), ROUND_FLOOR))
 
     def _all(self, said: Said, block: str) -> list[str]:
         """Return a block with those of M functions before and behind it."""
