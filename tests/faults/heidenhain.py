@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: a compensated program lets the coolant run while M0 waits",
+        SAID,
+        "goes = code == STOPS or (",
+        "goes = False or (",
+        f"{COMPENSATED}-stops]",
+    ),
+    Mutation(
         "klartext: M140 in inches leads beyond the end of travel",
         MOVES,
         "Decimal(1).scaleb(-decimals), ROUND_FLOOR",

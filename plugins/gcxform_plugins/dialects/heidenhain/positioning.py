@@ -19,6 +19,7 @@ TELLS_SPINDLE = frozenset({0, 2, 3, 4, 5, 6, 13, 14, 30})
 LONGEST_M = 4  # digits
 MACHINE = 91
 CHANGES = 6
+STOPS, LEAVES_TIP = 0, 129
 NEVER_BESIDE = (6, 91, 128, 129)
 SHORTEST = frozenset({126, 127})
 SILENT = frozenset({90, 102, 107, 108, 111, 113, 115, 117, 137, 145})
@@ -154,7 +155,7 @@ class Saying(Words):
         elif code in ENDS:
             said.end = f"M{code}"
         elif code in AT_END:
-            said.after += AT_END[code] if code != 129 else self._not_following()
+            said.after += self._at_end(code)
             said.leaves |= code == 129
             said.changes |= code == CHANGES
         elif code in SHORTEST:
@@ -184,9 +185,14 @@ class Saying(Words):
             )
         return AT_START.get(code, (f"M{code}",))
 
-    def _not_following(self) -> Sequence[str]:
-        """Return the block of M129; where nothing follows the tip it goes along as it stands."""
-        return ("M129",) if self.following or not self.reading.asides else self.along("M129")
+    def _at_end(self, code: int) -> Sequence[str]:
+        """Return the blocks of an M function that acts at the end of its block.
+
+        M0 stops the coolant as well (TNC 155, p. 15), which no other word does at once: it goes
+        along as it stands, and so does M129 where nothing follows the tip.
+        """
+        goes = code == STOPS or (code == LEAVES_TIP and not self.following)
+        return (self.along(f"M{code}") if goes else ()) or AT_END[code]
 
     def switch(self, on: bool) -> tuple[str, ...]:
         """Follow the tip, or leave it, and return the block of it.
