@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: nobody is told that parameters are set no more",
+        PARAMETERS,
+        "self.assumed[UNSET] = None",
+        "pass",
+        f"{COMPENSATED}-sets-none]",
+    ),
+    Mutation(
         "klartext: a compensated program lets the coolant run while M0 waits",
         SAID,
         "goes = code == STOPS or (",
@@ -94,8 +101,8 @@ MUTATIONS = (
     Mutation(
         "klartext: a compensated program no more reads into a parameter that outlives it",
         PARAMETERS,
-        'if name.startswith("QR"):',
-        "if not name:",
+        "self._lasting(item, key_of(name))",
+        "pass",
         f"{COMPENSATED}-keeps-a-parameter]",
     ),
     Mutation(
@@ -845,8 +852,8 @@ MUTATIONS = (
     Mutation(
         "klartext: what the control reads leaves parameters as they were",
         PARAMETERS,
-        "            self.q[key_of(name)] = None\n\n",
-        "            self.q.setdefault(key_of(name), None)\n\n",
+        "            self.q[key_of(name)] = None\n            self._lasting",
+        "            self.q.setdefault(key_of(name), None)\n            self._lasting",
         f"{WRITTEN}::test_what_only_the_control_decides_is_kept_with_all_behind_it",
     ),
     Mutation(

@@ -38,6 +38,7 @@ WHY = {
     29: "FN 29 sets values of the PLC",
 }
 CONTROL = range(100, 200)
+UNSET = "what is written sets no Q parameter: what runs behind it, or calls it, may not read them"
 
 
 Node = Tree[Token]
@@ -132,6 +133,8 @@ class Parameters(Labels):
         """Return the block of a parameter that outlives the program, in the same language."""
         value = self.q[key]
         if not key.startswith("QR"):
+            if self.reading.asides and key[1:].isdigit():
+                self.assumed[UNSET] = None
             return []
         if value is None or float(written(value)) != value:
             self.check_along(f"{key}, which outlives the program", item)
@@ -176,10 +179,9 @@ class Parameters(Labels):
     def _forget(self, text: str, item: gx.Item) -> None:
         """Forget the first parameter that a text names, which is set. Raises InputError."""
         for name in NAMED.findall(text.upper())[:1]:
-            if name.startswith("QR"):
-                self.check_along(f"{key_of(name)}, which outlives the program", item)
             self.assigned(key_of(name))
             self.q[key_of(name)] = None
+            self._lasting(item, key_of(name))
 
     def assigned(self, key: str) -> None:
         """Take note of a parameter that is set."""
