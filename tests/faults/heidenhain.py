@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: behind a shift that is written the tool stands where it stood",
+        LINES,
+        "self.place[axis] += self.shift[axis] - ends[axis]",
+        "pass",
+        f"{COMPENSATED}-shifted]",
+    ),
+    Mutation(
         "klartext: nobody is told that parameters are set no more",
         PARAMETERS,
         "self.assumed[UNSET] = None",

@@ -361,11 +361,12 @@ class Lines(gx.Speller):
         """Yield cycle 7, which is read as a shift of three axes, or as none where they stay."""
         if {*ends} != {*LINEAR} or ends == self.shift:
             raise gx.UnspeakableError("G52 of fewer axes, or that changes nothing", UNTURNED)
+        for axis in ends.keys() & self.place.keys():
+            self.place[axis] += self.shift[axis] - ends[axis]
         self.shift = ends
         yield "CYCL DEF 7.0 DATUM SHIFT"
         for number, (axis, value) in enumerate(ends.items(), 1):
             yield f"CYCL DEF 7.{number} {axis}{_signed(value)}"
-        self._forget(ends)
 
     def _forget(self, axes: Iterable[str]) -> None:
         for axis in axes:
