@@ -149,6 +149,14 @@ def test_tools_that_are_made_up_are_several() -> None:
     assert not {*map(int, numbers)} & {*TOOLS}
 
 
+def test_letters_of_comments_stay_whole(tmp_path: Path) -> None:
+    text = program("* - Vis à", "L X+1 Y+1 Z+1 FMAX ; Å", "FN 15: PRINT à", "L X+2 F100 ; voilà ")
+    lines = compensating(tmp_path).run(text.encode()).text.decode().splitlines()
+    assert lines[1] == "1 * - Vis à"
+    assert [line.partition(" ; ")[2] for line in lines if ";" in line] == ["Å", "voilà"]
+    assert lines[3] == "3 FN 15: PRINT à"
+
+
 def test_what_goes_along_is_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     heard = Speller.heard
 

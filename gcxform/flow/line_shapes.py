@@ -249,4 +249,5 @@ def _grammar(package: str, name: str) -> Lark:
 def _comment(text: str) -> str:
     """Return a comment in round brackets."""
     inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
-    return f"({inner.strip().translate(BRACKETS)})"
+    bare = inner.strip(" \t")  # half of a letter of two bytes is no blank
+    return f"({bare.translate(BRACKETS)})"

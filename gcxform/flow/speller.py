@@ -49,7 +49,7 @@ class Speller(ABC):
     @staticmethod
     def parts(block: str) -> tuple[list[str], list[tuple[str, str]]]:
         """Return the comments of a block, and its words: letters and numbers."""
-        comments = [each.strip() for each in COMMENT.findall(block)]
+        comments = [each.strip(" \t") for each in COMMENT.findall(block)]
         bare = COMMENT.sub("", block).partition(";")[0]
         return comments, WORD.findall(bare.translate(BLANKS).upper())
 

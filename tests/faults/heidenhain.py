@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: half of a letter at the end of a comment is taken for a blank",
+        "gcxform/flow/line_shapes.py",
+        'inner.strip(" \\t")',
+        "inner.strip()",
+        "tests/test_languages_compensated.py::test_letters_of_comments_stay_whole",
+    ),
+    Mutation(
         "klartext: behind a shift that is written the tool stands where it stood",
         LINES,
         "self.place[axis] += self.shift[axis] - ends[axis]",

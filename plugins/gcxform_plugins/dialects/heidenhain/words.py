@@ -163,7 +163,7 @@ class Words(gx.Translator):
     @property
     def statement(self) -> str:
         """The statement of this line, as it stands."""
-        return HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip()
+        return HEAD.sub("", self.lines[self.line].partition(";")[0], 1).rstrip(" \t")
 
     def all_along(self, *texts: str) -> list[str]:
         """Return the blocks of several statements that go along, each in a line of its own."""
