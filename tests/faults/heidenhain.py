@@ -50,6 +50,13 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: inches go along into a program in mm",
+        LINES,
+        "if asides and IN_INCHES in words and not self.inch:",
+        "if asides and IN_INCHES in words and self.inch is None:",
+        f"{COMPENSATED}-in-mm]",
+    ),
+    Mutation(
         "klartext: half of a letter at the end of a comment is taken for a blank",
         "gcxform/flow/line_shapes.py",
         'inner.strip(" \\t")',
@@ -108,7 +115,7 @@ MUTATIONS = (
     Mutation(
         "klartext: what goes along has no place between moves",
         WORDS,
-        'return [f"{ALONG} {gx.Speller.aside(said)}"] if',
+        'return [f"{code} {gx.Speller.aside(said)}"] if',
         "return [gx.Speller.aside(said)] if",
         f"{COMPENSATED}-joined]",
     ),

@@ -128,7 +128,7 @@ class Heidenhain(gx.Dialect):
         6: gx.MCode("tool", loses_position=True),
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
-        9001: gx.MCode("along"),
+        9001: gx.MCode("along", takes="P"),
         9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))

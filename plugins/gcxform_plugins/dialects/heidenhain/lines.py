@@ -30,7 +30,7 @@ BEHIND = frozenset((0, 1, 2, 30))
 QUIET = frozenset(("M1", "M7", "M8", "M9"))
 """M functions that leave the spindle as it is."""
 TAP = "G33.1"
-GOES_ALONG = ALONG[0], ALONG[1:]
+GOES_ALONG, IN_INCHES = (ALONG[0], ALONG[1:]), ("P", "1")
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
@@ -90,7 +90,9 @@ class Lines(gx.Speller):
             self.name = asides.pop(0).removeprefix(BEGIN_PGM)
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
-        words = [each for each in words if not asides or each != GOES_ALONG]
+        if asides and IN_INCHES in words and not self.inch:
+            raise gx.UnspeakableError(f"{asides[0]}: in inches, as the program is no more", IN_MM)
+        words = [each for each in words if not asides or each not in (GOES_ALONG, IN_INCHES)]
         codes = [_code(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]
@@ -376,6 +378,7 @@ class Lines(gx.Speller):
 UNTURNED = gx.put_before("offsets")
 
 
+IN_MM = "leave `metric` out: a TNC takes programs in inches"
 ONE_UNIT = gx.put_before("metric")
 NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
 ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))

@@ -20,6 +20,8 @@ HEAD = re.compile(r"[/\d \t]*")
 """What stands before a statement."""
 ALONG = "M9001"
 """The code of a block that goes along as it was programmed."""
+LENGTHS = re.compile(r"BLK|TOOL\s+DEF|CYCLE?\s+DEF\s*32\.[1-9]", re.IGNORECASE)
+"""What has lengths in it, in the unit of the program."""
 STAYS = "`absolute`, which compensates nothing, leaves the line as it stands"
 UNKNOWN = "say where the axes stand: start = { X = ... } in [input], or begin with absolute values"
 
@@ -155,10 +157,11 @@ class Words(gx.Translator):
         """Return the block of what goes along where all is written anew for a TNC; else nothing.
 
         Without a text that is the statement of this line, as it stands. Its code makes it an event,
-        which moves keep their place by.
+        which moves keep their place by; in inches it says so, where lengths go along.
         """
         said = text or self.statement
-        return [f"{ALONG} {gx.Speller.aside(said)}"] if self.reading.asides else []
+        code = f"{ALONG} P1" if self.inch and LENGTHS.match(said) else ALONG
+        return [f"{code} {gx.Speller.aside(said)}"] if self.reading.asides else []
 
     @property
     def statement(self) -> str:
