@@ -134,8 +134,7 @@ def _words_of_codes(dialect: type[Dialect]) -> Complaints:
         if code.lengths != lengths:
             yield name, f"{name} has the lengths {code.lengths!r}; they are {lengths!r}"
         own = LINEAR.replace(EXTRUDER, "") + "IJK" + ("E" if code.act == "look-ahead" else "")
-        bare = set(code.takes) & set(own) - {*code.lengths}
-        if bare:
+        if bare := set(code.takes) & set(own) - {*code.lengths}:
             yield name, f"{name} takes {sorted(bare)}, which are lengths, and does not say so"
 
 

@@ -1,4 +1,4 @@
-"""What a program says of outside corners under compensation: G450 and G451 of a SINUMERIK."""
+"""Outside corners under compensation: what programs say of them (G450, G451), rapids there."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Ints
+from gcxform_plugins.passes.cutter_comp.offsetting import Edge
 
 ENDS = "-corners"
 
@@ -50,3 +51,15 @@ def codes_of(dialect: type[gx.Dialect]) -> Mapping[str, str]:
     """Return the codes of a control that say how corners are joined, with the way."""
     acts = {name: code.act for name, code in dialect.codes.items()}
     return {name: act.removesuffix(ENDS) for name, act in acts.items() if act.endswith(ENDS)}
+
+
+def refuse_rapid_corners(path: gx.Toolpath, inserted: Mapping[int, Edge]) -> None:
+    """Refuse rapids behind an outside corner that is an arc: how they go around is known of none.
+
+    Straight past it, as LinuxCNC does, the tool would cut into the corner.
+    """
+    around = np.array([row for row, edge in inserted.items() if edge.corner == "arc"], np.int64)
+    wrong = around[path.kind[around] == gx.Kind.RAPID]
+    if len(wrong):
+        message = "a rapid around an outside corner, of which it is not known how it is joined"
+        raise path.refuse("GX232", np.sort(wrong), message, "go around the corner with G1")

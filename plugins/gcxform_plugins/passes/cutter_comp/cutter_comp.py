@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
-from gcxform_plugins.passes.cutter_comp.corners_said import corners_said
+from gcxform_plugins.passes.cutter_comp.corners_said import corners_said, refuse_rapid_corners
 from gcxform_plugins.passes.cutter_comp.offsetting import (
     CannotOffsetError,
     Corners,
@@ -74,7 +74,7 @@ class CutterComp(gx.CompensationPass):
         for first, last in _sections(path):
             centre.resolve(first, last)
         if not context.source.cutter_comp.corners:
-            _refuse_rapid_corners(path, centre.inserted)
+            refuse_rapid_corners(path, centre.inserted)
         return centre.path().replace(blocks=blocks)
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
@@ -230,22 +230,9 @@ def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
     ends = {f"M{number}" for number, code in context.source.m_codes.items() if code.ends}
     ended = any(event.what in ends and event.row == len(path) for event in path.events)
     rule = context.source.cutter_comp
-    if ended and rule.corners and rule.entry:
-        return
-    last = np.array([len(path) - 1])
-    raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
-
-
-def _refuse_rapid_corners(path: gx.Toolpath, inserted: Mapping[int, Edge]) -> None:
-    """Refuse rapids behind an outside corner that is an arc: how they go around is known of none.
-
-    Straight past it, as LinuxCNC does, the tool would cut into the corner.
-    """
-    around = np.array([row for row, edge in inserted.items() if edge.corner == "arc"], np.int64)
-    wrong = around[path.kind[around] == gx.Kind.RAPID]
-    if len(wrong):
-        message = "a rapid around an outside corner, of which it is not known how it is joined"
-        raise path.refuse("GX232", np.sort(wrong), message, "go around the corner with G1")
+    if not (ended and rule.corners and rule.entry):
+        last = np.array([len(path) - 1])
+        raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
 
 
 class _CentrePath:
@@ -260,8 +247,7 @@ class _CentrePath:
         self.sweep = np.array(path.sweep)
         self.sense = path.sense.astype(np.int64)
         self.inserted: dict[int, Edge] = {}
-        self.rows: list[int] = []
-        self.axes: list[list[int]] = []
+        self.rows, self.axes = list[int](), list[list[int]]()
         self.finish: list[tuple[float, float]] = []
         self.standing: list[tuple[int, int, list[int], list[int]]] = []
         self.listed: dict[tuple[int, ...], tuple[list[Any], ...]] = {}
