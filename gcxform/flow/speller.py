@@ -13,6 +13,8 @@ BLANKS = str.maketrans("", "", " \t")
 ASIDE = "\x01"
 """What a comment begins with that is none, but goes along as it was programmed, to a speller that
 hears `asides`: a translator of the same language says them, and takes the sign out of comments."""
+ALONG = "M9001"
+"""The code of a block with asides: it makes them an event, which moves keep their place by."""
 NAMED = "\x04"
 """What an aside begins with that is the name of the tool which T of its block is."""
 HIDDEN, SHOWN = str.maketrans("()", "\x02\x03"), str.maketrans("\x02\x03", "()")
@@ -58,6 +60,11 @@ class Speller(ABC):
         """Return what goes along as it was programmed, in a block."""
         return f"({ASIDE}{text.translate(HIDDEN)})"
 
+    @classmethod
+    def along(cls, text: str) -> str:
+        """Return what goes along as it was programmed, in a block whose moves keep their place."""
+        return f"{ALONG} {cls.aside(text)}"
+
     def heard(self, block: str) -> tuple[list[str], list[str], list[tuple[str, str]]]:
         """Return what goes along as it was programmed, the other comments, and the words."""
         comments, words = self.parts(block)
@@ -66,6 +73,7 @@ class Speller(ABC):
         asides = [each[1:].translate(SHOWN) for each in comments if each.startswith(ASIDE)]
         self.tool_name = next((each[1:] for each in asides if each.startswith(NAMED)), "")
         asides = [each for each in asides if not each.startswith(NAMED)]
+        words = [each for each in words if not asides or each != (ALONG[0], ALONG[1:])]
         return asides, [each for each in comments if not each.startswith(ASIDE)], words
 
     @abstractmethod

@@ -157,7 +157,7 @@ MUTATIONS = (
     Mutation(
         "fagor: corners half rounded are rounded",
         BLOCKS,
-        'words.append(gx.Speller.aside("G50"))',
+        'words.append(gx.Speller.along("G50"))',
         "pass",
         f"{CASE}compensated-with-asides]",
     ),

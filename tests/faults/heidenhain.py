@@ -113,13 +113,6 @@ MUTATIONS = (
         f"{COMPENSATED}-resets]",
     ),
     Mutation(
-        "klartext: what goes along has no place between moves",
-        WORDS,
-        'return [f"{code} {gx.Speller.aside(said)}"] if',
-        "return [gx.Speller.aside(said)] if",
-        f"{COMPENSATED}-joined]",
-    ),
-    Mutation(
         "klartext: a compensated program no more reads into a parameter that outlives it",
         PARAMETERS,
         "self._lasting(item, key_of(name))",
@@ -225,6 +218,13 @@ MUTATIONS = (
         "self.name = asides.pop(0).removeprefix(BEGIN_PGM)",
         "asides.pop(0)",
         f"{COMPENSATED}-by-name]",
+    ),
+    Mutation(
+        "languages: moves are joined across what goes along",
+        "gcxform/flow/speller.py",
+        'return f"{ALONG} {cls.aside(text)}"',
+        "return cls.aside(text)",
+        "tests/test_corpus.py::test_case[dialects/siemens/compensated-with-a-tolerance-between]",
     ),
     Mutation(
         "languages: a tool is called by a number that was made up",

@@ -137,7 +137,7 @@ class Blocks(gx.Translator):
                 self.refuse("G6 is read with both words of a centre", codes["G6"])
             words, after = ["G90.1", *words], ["G91.1", *after]
         if "G50" in codes and self.reading.asides:
-            words.append(gx.Speller.aside("G50"))
+            words.append(gx.Speller.along("G50"))
         if "G60" in codes:
             after += self._corner_again(codes["G60"])
         yield from [" ".join(words)] if words else []
@@ -352,7 +352,7 @@ class Blocks(gx.Translator):
             text = code(self.lines[self.line])
             if "CONTERROR" in text.upper() and any(map(INCHES.search, self.lines)):
                 self.refuse("a contour error beside G70 and moves that are written anew", item)
-            return [gx.Speller.aside(text[text.index("#") :].strip())]
+            return [gx.Speller.along(text[text.index("#") :].strip())]
         if head in tables.INERT or (head in tables.OFF and rest[:1] == ["OFF"]):
             return []
         what = tables.STATEMENTS.get(head, "it is not known here")

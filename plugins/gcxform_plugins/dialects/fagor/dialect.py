@@ -121,6 +121,7 @@ class Fagor(gx.Dialect):
         6: gx.MCode("tool", act="change-tool", loses_position=True),
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
+        9001: gx.MCode("along"),
         9000: gx.MCode("kept", takes="P"),
     }
     chosen: ClassVar[Mapping[str, str]] = dict.fromkeys(

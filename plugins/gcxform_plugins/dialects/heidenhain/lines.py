@@ -14,7 +14,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
 from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetched_ahead
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
-from gcxform_plugins.dialects.heidenhain.words import ALONG, exact
+from gcxform_plugins.dialects.heidenhain.words import exact
 
 BEGIN_PGM = "BEGIN PGM "
 GOES_ON = "~ "
@@ -30,7 +30,7 @@ BEHIND = frozenset((0, 1, 2, 30))
 QUIET = frozenset(("M1", "M7", "M8", "M9"))
 """M functions that leave the spindle as it is."""
 TAP = "G33.1"
-GOES_ALONG, IN_INCHES = (ALONG[0], ALONG[1:]), ("P", "1")
+IN_INCHES = "P", "1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
@@ -92,7 +92,7 @@ class Lines(gx.Speller):
         comment = text.rstrip(GOES_ON) if text else None
         if asides and IN_INCHES in words and not self.inch:
             raise gx.UnspeakableError(f"{asides[0]}: in inches, as the program is no more", IN_MM)
-        words = [each for each in words if not asides or each not in (GOES_ALONG, IN_INCHES)]
+        words = [each for each in words if not asides or each != IN_INCHES]
         codes = [_code(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]

@@ -18,8 +18,6 @@ MM = 25.4  # of an inch
 COMPUTED = 8  # decimals of mm, inch or degrees: far below what the control resolves
 HEAD = re.compile(r"[/\d \t]*")
 """What stands before a statement."""
-ALONG = "M9001"
-"""The code of a block that goes along as it was programmed."""
 LENGTHS = re.compile(r"BLK|TOOL\s+DEF|CYCLE?\s+DEF\s*32\.[1-9]", re.IGNORECASE)
 """What has lengths in it, in the unit of the program."""
 STAYS = "`absolute`, which compensates nothing, leaves the line as it stands"
@@ -160,8 +158,8 @@ class Words(gx.Translator):
         which moves keep their place by; in inches it says so, where lengths go along.
         """
         said = text or self.statement
-        code = f"{ALONG} P1" if self.inch and LENGTHS.match(said) else ALONG
-        return [f"{code} {gx.Speller.aside(said)}"] if self.reading.asides else []
+        block = f"{'P1 ' if self.inch and LENGTHS.match(said) else ''}{gx.Speller.along(said)}"
+        return [block] if self.reading.asides else []
 
     @property
     def statement(self) -> str:

@@ -73,7 +73,7 @@ class Blocks(Contours):
             raise self.refusal(error.code, error.message, at, error.hint) from None
         if line.asides and self.reading.asides:
             made[:1] = [
-                f"{made[0] if made else ''} {gx.Speller.aside(' '.join(line.asides))}".lstrip()
+                f"{made[0] if made else ''} {gx.Speller.along(' '.join(line.asides))}".lstrip()
             ]
         if made and line.number:
             made[0] = line.number + made[0]

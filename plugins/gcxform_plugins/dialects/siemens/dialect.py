@@ -178,6 +178,7 @@ class Siemens(gx.Dialect):
         128: gx.MCode("tip", barrier=v.FOLLOWING),
         129: gx.MCode("tip"),
         17: gx.MCode("stop", after=True, ends=True),
+        9001: gx.MCode("along"),
         9000: gx.MCode("kept", takes="P"),
     }
     differs: ClassVar[Mapping[str, str]] = {

@@ -44,7 +44,7 @@ MOVES_ZERO = frozenset(("G20", "G21", "G43", "G49", "G53", "M6", "G68", "G69", *
 AXES = frozenset("XYZABC")
 BLENDS = re.compile(r"G64[1-5]")
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
-OWN = (17, 128, 129, 9000)
+OWN = (17, 128, 129, 9000, 9001)
 NO_LENGTH = "0"
 
 

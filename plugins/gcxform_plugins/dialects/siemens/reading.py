@@ -45,7 +45,7 @@ WHY = {
 AXES = LINEAR + ROTARY
 POLAR_WAYS = frozenset((("AP", ABSOLUTE), ("RP", ABSOLUTE), ("AP", STEP)))
 """Ways of polar words that are read: AP=IC() turns on from the last AP (PM 175)."""
-OWN = frozenset((128, 129, 9000))
+OWN = frozenset((128, 129, 9000, 9001))
 """The M codes with which blocks say TRAORI, TRAFOOF and what is kept: elsewhere the machine's."""
 PLAIN = "write plain numbers, or let the CAM write them"
 Reader = Callable[[Line, gx.Item], None]
