@@ -26,9 +26,7 @@ class ToolNames:
             return str(known[0])
         if known or not self.reading.asides:
             what = "several tools of the machine file have it" if known else "which number it has"
-            hint = (
-                f'give a tool of the machine file the name "{name}", behind its length and radius'
-            )
+            hint = f'give a tool of the machine file the name "{name}"'
             why = what if known else f"{what} is not known"
             raise UnspeakableError(f'the tool "{name}" by its name: {why}', hint)
         return str(self._made_up.setdefault(name, MADE_UP + len(self._made_up)))

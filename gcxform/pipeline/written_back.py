@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from gcxform.emit.emitter import Emitted
@@ -150,11 +151,12 @@ class SpelledOut:
         """Return a proved program with the digits of its seal."""
         return sealed_anew(text, self.marks.seal) if self._seals else text
 
-    @property
+    @cached_property
     def _blocks(self) -> bytes:
+        """What was written, which is asked for when all of it is there."""
         return b"".join(part.text for part in self.parts)
 
-    @property
+    @cached_property
     def _seals(self) -> bool:
         """Whether a seal is wanted: there is a stamp."""
         return self.marks.seal != "" and without_lines(self._blocks) != self._blocks
