@@ -12,6 +12,7 @@ import numpy as np
 
 from gcxform.config import arguments
 from gcxform.contract.own_codes import with_own_codes
+from gcxform.contract.tilted_planes import with_planes
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.model import ErrorModel
@@ -53,6 +54,7 @@ class Program:
 
     `path` is its whole toolpath; asking for it raises InputError where the program is refused.
     Codes that the machine file declares are of the dialect; UsageError for those that it has.
+    Tilted planes are followed where it says what turns the table.
     """
 
     text: bytes
@@ -62,6 +64,8 @@ class Program:
 
     def __post_init__(self) -> None:
         kind = with_own_codes(self.dialect, self.reading.control)
+        if self.reading.tables is not None:
+            kind = with_planes(kind, "followed")
         object.__setattr__(self, "dialect", kind)
 
     @cached_property
@@ -126,7 +130,7 @@ class Program:
         return shown(self.name, rows, drawn(strokes(path), "the path"), head)
 
     def _read(self, source: Source) -> Toolpath:
-        axes = source.axes(self.dialect.axes)
+        axes = self.reading.axes_of(source, self.dialect)
         interpreter = Interpreter(self.dialect, self.reading, axes, self.name)
         interpreter.undecided = source.undecided
         reader = WindowReader(self.dialect)

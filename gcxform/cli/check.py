@@ -280,7 +280,7 @@ def reading_findings(
     After the first window that is refused nothing is known of the state any more, so from there on
     only those findings count that are about a block by itself.
     """
-    axes = source.axes(pipeline.source.axes)
+    axes = pipeline.machine_reading.axes_of(source, pipeline.source)
     chosen = source.assumed
     source, dialect = pipeline.without_tip_codes(source)
     interpreter = Interpreter(dialect, pipeline.machine_reading, axes, source.name)

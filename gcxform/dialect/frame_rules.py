@@ -91,7 +91,9 @@ class TipRule:
                      `TRAORI`
     follows_at_start whether it follows the tip when a program starts; None where that is not known
     unfollowed       codes of tilted planes and tips that are not followed, with what they do:
-                     "plane", "no-plane" or "tip"; see `gcxform/contract/kept_planes.py`
+                     "plane", "no-plane" or "tip"; see `gcxform/contract/tilted_planes.py`
+    planes           codes of tilted planes that are followed on a machine whose tables are known,
+                     with what they do: "define-plane" or "orient"
     """
 
     codes: Mapping[str, str] = field(default_factory=dict)
@@ -101,3 +103,4 @@ class TipRule:
     spelled: Mapping[str, str] = field(default_factory=dict)
     follows_at_start: bool | None = None
     unfollowed: Mapping[str, str] = field(default_factory=dict)
+    planes: Mapping[str, str] = field(default_factory=dict)

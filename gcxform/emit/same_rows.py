@@ -88,7 +88,8 @@ class SameRows:
         alike |= one_move[:, None] & ~self.positions.programmed[rows]
         framed = (self.path.form[rows] == Form.HOME) & (self.path.nth[rows] == 0)
         framed |= one_move | cycle[:, 0]
-        as_far = incremental[:, 0] & self.frames(rows, others)
+        nowhere = still.all(axis=1)  # which is the same in all frames: G91 G28 Z0
+        as_far = incremental[:, 0] & (self.frames(rows, others) | nowhere)
         blind = self.path.form[rows] == Form.BLIND
         return np.asarray(good & ((alike.all(axis=1) & ~blind) | as_far | ~(framed | blind)))
 

@@ -199,6 +199,16 @@ def chain_of(machine: Machine, tool: Tool | None = None) -> Chain:
     return chain.with_tool(tool, machine.gauge_point) if tool else chain
 
 
+def tables_of(machine: Machine) -> Chain | None:
+    """Return the chain of a machine of which only tables turn; None where it is not known."""
+    if machine.head or not machine.table:
+        return None
+    try:
+        return chain_of(machine)
+    except UsageError:
+        return None
+
+
 def _unfit(machine: Machine, letter: str, axis: Axis) -> str:
     """Return why an axis cannot be followed, or nothing."""
     if letter in LINEAR:

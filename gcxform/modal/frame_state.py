@@ -42,6 +42,19 @@ class Turn:
     centre: tuple[float, float, float]
 
 
+@dataclass(frozen=True, slots=True)
+class TiltedPlane:
+    """A plane in space: word -> turned @ word + zero, in positions of a tool without length.
+
+    Before the rotary axes have turned that holds where they are at 0; `angles` (deg) are those that
+    they have then been turned to.
+    """
+
+    turned: Matrix
+    zero: Vector
+    angles: Mapping[str, float] = field(default_factory=dict)
+
+
 @dataclass(frozen=True)
 class FrameState:
     """What decides how words become positions. Vectors have one number per axis, mm or degrees.
@@ -69,6 +82,7 @@ class FrameState:
     polar, diameter   G16 and G7 are in force
     homes         machine positions of G28 and G30
     following     whether the control follows the tip of the tool; None where that is not known
+    plane         the tilted plane that is followed, by G68.2 and G53.1
     tilt, tip     the tilted plane and the tip that are in force, by code and number: where they are
                   is not known; `tilted` counts them
     """
@@ -100,6 +114,7 @@ class FrameState:
     diameter: bool = False
     homes: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     following: bool | None = None
+    plane: TiltedPlane | None = None
     tilt: str = ""
     tip: str = ""
     tilted: int = 0
@@ -136,8 +151,8 @@ class FrameState:
         machine = unknown
         if work in offsets:
             base = np.array(placed(work))
-            zeros = {code: _vector(placed(code) - base) for code in offsets}
-            machine = _vector(-base)
+            zeros = {code: vector_of(placed(code) - base) for code in offsets}
+            machine = vector_of(-base)
         return replace(self, work=work, first=work, known=known, zeros=zeros, machine=machine)
 
     def zero_of(self, work: str) -> Vector:
@@ -199,6 +214,8 @@ class FrameState:
         for k, name in self._set_anywhere(matrix is not None).items():
             origin[k] += name
         shift = [place if isfinite(place) else 0.0 for place in zero]
+        if self.plane is not None and self.plane.angles:
+            matrix, shift[:3] = self.plane.turned, self.plane.zero
         assert self.axes[:3] == "XYZ"
         for k, length in enumerate(self.tool):
             if isfinite(length):
@@ -248,7 +265,7 @@ class FrameState:
         shift = shift + np.array(self.preset[:3]) + np.array(self.local[:3])
         about = np.array(rotation(angle, 0, 1))
         matrix, shift = about @ matrix, about @ shift
-        return _matrix(matrix), shift.tolist()
+        return matrix_of(matrix), shift.tolist()
 
 
 if TYPE_CHECKING:
@@ -278,12 +295,14 @@ def rotation(angle: float, first: int, second: int) -> Matrix:
     matrix = np.eye(3)
     matrix[first, first] = matrix[second, second] = c
     matrix[first, second], matrix[second, first] = -s, s
-    return _matrix(matrix)
+    return matrix_of(matrix)
 
 
-def _matrix(values: Floats) -> Matrix:
+def matrix_of(values: Floats) -> Matrix:
+    """Return an array (3, 3) as a value."""
     return tuple((float(a), float(b), float(c)) for a, b, c in values)
 
 
-def _vector(values: Floats) -> Vector:
+def vector_of(values: Floats) -> Vector:
+    """Return an array (n,) as a value."""
     return tuple(float(value) for value in values)

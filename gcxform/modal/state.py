@@ -13,9 +13,11 @@ from gcxform.config.quantities import AXIS_LETTERS
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.dialect.increments import Increments
+from gcxform.machine.chain import Chain, tables_of
 from gcxform.machine.machine import TIP_AT_START, Machine, Tool
 from gcxform.modal.cycles.expansion import Cycles
 from gcxform.modal.frame_state import FrameState
+from gcxform.syntax.source import Source
 from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.toolpath.frames import Frame
 from gcxform.values import dataclass
@@ -63,6 +65,9 @@ class Reading:
     feed_increment   what 1 means in an F without a point: a number of units per minute, a system
                   or "calculator"; None: such an F is refused where the dialect asks for a point
     rotary        the letters of the rotary axes of the machine; "" where that is not known
+    tables        the chain of a machine whose rotary axes all turn the table, where it is known:
+                  there tilted planes are followed; `turns_plainly`: the axes that turn a tool onto
+                  them do so by words of their own
     open_pecks    whether a cycle may be read whose way back between pecks is a parameter that is
                   not given: where it then goes up to is nan; or whose R is above the level from
                   which it began, under G99. Its block must stay as it is. With `tables_stay`,
@@ -100,6 +105,8 @@ class Reading:
     control: Mapping[str, str | float] = field(default_factory=dict)
     inert_m: frozenset[int] = frozenset()
     rotary: str = ""
+    tables: Chain | None = None
+    turns_plainly: bool = False
     open_pecks: bool = False
     tables_stay: bool = True
     crosses: bool = False
@@ -160,6 +167,14 @@ class Reading:
         """What is said of distances without a point, None where nothing is."""
         return None if self.increment is None else Increments.of(self.increment)
 
+    def axes_of(self, source: Source, dialect: type[Dialect]) -> str:
+        """Return the axes that a program may move: by name, or to turn the tool onto a plane."""
+        named = source.axes(dialect.axes)
+        codes = (dialect.codes[name] for name in dialect.tip_rule.planes)
+        if self.tables is None or not any(code.act for code in codes):
+            return named
+        return "".join(axis for axis in dialect.axes if axis in {*named, *self.tables.letters})
+
     def follows_at_start(self, otherwise: bool | None) -> bool | None:
         """Return whether the control follows the tip before the first block, None if not known."""
         said = {"on": True, "off": False}
@@ -175,6 +190,7 @@ class Reading:
             control=machine.control,
             inert_m=machine.inert_m,
             rotary="".join(machine.table + machine.head),
+            tables=tables_of(machine),
             subprograms=(*self.subprograms, *machine.subprograms),
             told=machine.told,
         )

@@ -29,10 +29,10 @@ import numpy as np
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import Open
 from gcxform.contract.inert_codes import with_inert
-from gcxform.contract.kept_planes import says_the_same, with_kept_planes
 from gcxform.contract.options import taken
 from gcxform.contract.own_codes import with_own_codes
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
+from gcxform.contract.tilted_planes import says_the_same, treatment, with_planes
 from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.code_translation import Saying
@@ -133,15 +133,16 @@ class Plan:
             arguments.instance("machine", machine, Machine, "a machine, as load_machine gives it")
         control = machine.control if machine is not None else {}
         source, target = (
-            with_kept_planes(dialect_of(each), False) for each in (self.source, self.target)
+            with_planes(dialect_of(each), "refused") for each in (self.source, self.target)
         )
         same, source = source is target, with_own_codes(source, control)
         target = source if same else with_inert(target, self.inert)
         steps = tuple(taken(step) for step in steps)
-        keeps = source is target and says_the_same(s for s in steps if isinstance(s, Pass))
+        same = source is target
+        planes = treatment(same, [step for step in steps if isinstance(step, Pass)], machine)
         return {
-            "source": with_kept_planes(source, keeps),
-            "target": with_kept_planes(target, keeps),
+            "source": with_planes(source, planes),
+            "target": with_planes(target, planes if same else "refused"),
             "passes": steps,
             "budget": None if self.budget is None else limit("budget", self.budget),
             "growth": None if self.growth is None else limit("growth", self.growth),
@@ -256,7 +257,9 @@ class Plan:
         own = self.source.translator is self.target.translator and not (same or stays)
         reading = replace(reading, curves=curves, stays=stays, asides=own)
         open_ = self._open_unit(counts) if not reading.units else ""
-        return replace(reading, crosses=not same, modes_count=counts, unit_open=open_)
+        return replace(
+            reading, crosses=not same, turns_plainly=folds, modes_count=counts, unit_open=open_
+        )
 
     def _open_unit(self, counts: bool) -> str:
         """Return what is done where a setting decides in which unit a program begins."""

@@ -127,7 +127,7 @@ class Run:
     def _stages(self) -> Stages:
         """Return what reads, writes and proves windows; note what frames the program."""
         plan = self.plan
-        axes = self.source.axes(plan.source.axes)
+        axes = plan.machine_reading.axes_of(self.source, plan.source)
         written = set(axes).union(*(step.demands.letters for step in self.steps))
         axes = "".join(axis for axis in plan.source.axes if axis in written)
         reading = plan.reading_at_start(axes)

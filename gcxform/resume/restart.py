@@ -42,7 +42,7 @@ class Restart:
     line: int
 
     def __post_init__(self) -> None:
-        self.axes = self.source.axes(self.dialect.axes)
+        self.axes = self.reading.axes_of(self.source, self.dialect)
         self.placed: set[str] = set()  # axes that are programmed before the line
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)

@@ -120,7 +120,7 @@ def _shown(source: Source, executed: Source, dialect: type[Dialect], reading: Re
 
 
 def _interpreted(source: Source, dialect: type[Dialect], reading: Reading) -> list[Interpreted]:
-    interpreter = Interpreter(dialect, reading, source.axes(dialect.axes), source.name)
+    interpreter = Interpreter(dialect, reading, reading.axes_of(source, dialect), source.name)
     interpreter.undecided = source.undecided
     reader = WindowReader(dialect)
     texts: Iterable[bytes] = [*source.windows()] or [b""]

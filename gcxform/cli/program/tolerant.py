@@ -31,7 +31,7 @@ class Tolerant:
     unread: int = 0
 
     def __post_init__(self) -> None:
-        axes = self.source.axes(self.dialect.axes)
+        axes = self.reading.axes_of(self.source, self.dialect)
         self.reader = WindowReader(self.dialect, self.tables)
         self.interpreter = Interpreter(self.dialect, self.reading, axes, self.source.name)
         self.interpreter.undecided = self.source.undecided

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from gcxform.modal.frame_state import FrameState
+from gcxform.modal.frames import planes
 from gcxform.modal.frames import tool_lengths as lengths
 from gcxform.modal.frames import transforms as turns
 from gcxform.modal.frames import work_offsets as offsets
-from gcxform.modal.frames.act import Act, Asked
+from gcxform.modal.frames.act import Act, ActError, Asked
 
 ACTS: Mapping[str, Act] = {
     "call": offsets.behind_call,
@@ -31,6 +33,8 @@ ACTS: Mapping[str, Act] = {
     "plane": turns.plane,
     "no-plane": turns.no_plane,
     "tip": lengths.tip,
+    "define-plane": planes.define,
+    "orient": planes.orient,
     "polar": turns.polar,
     "no-polar": turns.no_polar,
     "rotate": turns.rotate,
@@ -57,6 +61,7 @@ WORDS: Mapping[str, str] = {
     "no-length": "H",
     "tip": "H",
     "plane": "PQRIJK",
+    "define-plane": "PQRIJK",
     "vectors": "H",
     "set-tool": "Q",
     "set-work": "LPRQIJK",
@@ -67,7 +72,16 @@ WORDS: Mapping[str, str] = {
 """The words, besides axes, by which an act says what it does. Work offsets have any."""
 
 
-def unheard(act: str, asked: Asked) -> str:
+def done(name: str, state: FrameState, asked: Asked) -> FrameState:
+    """Return the state behind an act. Raises ActError."""
+    planes.check_in_plane(state, name, asked.code)
+    if word := _unheard(name, asked):
+        message = f"{asked.code} takes {word}, and what this asks for is not known"
+        raise ActError("GX213", message)
+    return ACTS[name](state, asked)
+
+
+def _unheard(act: str, asked: Asked) -> str:
     """Return a word of the block that its code takes and its act does not look at, if there is one.
 
     Two blocks that differ in such a word alone would be taken for the same.

@@ -21,7 +21,8 @@ from gcxform.modal.columns import fill, with_increments
 from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
-from gcxform.modal.frames.acts import ACTS, unheard
+from gcxform.modal.frames.acts import ACTS, done
+from gcxform.modal.frames.planes import out_of_plane
 from gcxform.modal.frames.tool_lengths import LENGTH_STEP, length_moves
 from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.line_notes import WayHome
@@ -121,15 +122,12 @@ class Track:
                     if act.name in LENGTHENED:
                         self.lengths[line] = self.state.frames.tool
                 except ActError as error:
+                    self.state.frames = out_of_plane(self.state.frames, act.name)
                     self.findings.add(line, error.code, error.message, act.code[0], error.hint)
 
     def _one_act(self, act: Act, line: int) -> None:
         before, old = self.state.frames, self.frame
-        asked = self._asked(act, line)
-        if word := unheard(act.name, asked):
-            message = f"{asked.code} takes {word}, and what this asks for is not known"
-            raise ActError("GX213", message)
-        self.state.frames = frames = ACTS[act.name](before, asked)
+        self.state.frames = frames = done(act.name, before, self._asked(act, line))
         if act.name in ZEROING:
             self.zeroed.append((line + self.lines.window.first_line, frames))
         if act.name in FRAMELESS:

@@ -88,7 +88,7 @@ def plane(state: FrameState, asked: Asked) -> FrameState:
 
 def no_plane(state: FrameState, asked: Asked) -> FrameState:
     """G69: the coordinates of the work offset again."""
-    return replace(state, tilt="")
+    return replace(state, tilt="", plane=None)
 
 
 def _mirrored(state: FrameState) -> set[str]:

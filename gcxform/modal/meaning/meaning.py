@@ -84,6 +84,7 @@ ACT_ORDER = (
     "no-scale",
     "mirror",
     "no-mirror",
+    "define-plane",
     "set-work",
     "local",
     "preset",
@@ -91,15 +92,16 @@ ACT_ORDER = (
     "preset-suspend",
     "preset-restore",
     "store-home",
+    "orient",
     "home",
     "machine",
     "probe",
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 STILL_WORDS = frozenset("NS")
-OWN_MOVES = frozenset({"home", "machine", "probe"})
+OWN_MOVES = frozenset({"orient", "home", "machine", "probe"})
 FRAMING = frozenset(
-    {"diameter", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+    {"diameter", "orient", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
 )
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})
@@ -113,7 +115,9 @@ LENGTHENED = frozenset(
 """What puts another tool length in force, or none."""
 ZEROING = PRESETS | {"local", "preset-restore"}
 """Acts that say where coordinates, or ways home, count from."""
-TAKES_MOTION = frozenset({"home", "store-home", "set-work", "local", "preset", "length-vector"})
+TAKES_MOTION = frozenset(
+    {"home", "store-home", "set-work", "local", "preset", "length-vector", "define-plane"}
+)
 """Acts whose axis words are theirs, so that the block can have no other motion."""
 
 

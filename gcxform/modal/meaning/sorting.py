@@ -6,7 +6,7 @@ that can be refused without knowing the numbers is found here.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
@@ -39,6 +39,7 @@ from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statem
 
 BEHIND_AN_END = "; ends a block: what is behind it is another line, and a comment stands in ( )"
 TO_THE_CONSOLE = "$ begins a command for the console of a control, and no block: send it before"
+BY_A_TABLE = "on a table that turns it is followed, where the machine file says its axes"
 CENTRE = "IJK"
 COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""
@@ -169,7 +170,7 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
             )
         owners[code.group] = word
         meaning.groups[code.group] = name
-        yield from _unresolved(name, code, word)
+        yield from _unresolved(name, code, word, dialect.tip_rule.planes)
     if meaning.groups.get("cycle", "G80") != "G80" and "motion" in meaning.groups:
         word = owners["cycle"]
         message = f"{meaning.groups['cycle']} beside {meaning.groups['motion']}"
@@ -177,15 +178,16 @@ def _g_codes(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator
     yield from _g_effects(dialect, meaning, owners)
 
 
-def _unresolved(name: str, code: Code, word: Word) -> Iterator[Refusal]:
-    """Refuse barriers, and calls that do not begin their block."""
+def _unresolved(name: str, code: Code, word: Word, planes: Container[str]) -> Iterator[Refusal]:
+    """Refuse barriers, and calls that do not begin their block; `planes` a table may follow."""
     width = word.end - word.start
     if code.effect is Effect.CALL:
         message = f"in what order {name} and the words in front of it act is not certain"
         hint = "write the call in a block of its own"
         yield Refusal("GX210", word.start, width, message, hint)
     if code.effect is Effect.BARRIER:
-        yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}")
+        hint = BY_A_TABLE if name in planes else ""
+        yield Refusal("GX210", word.start, width, f"{name} is not resolved: {code.reason}", hint)
 
 
 def _g_effects(

@@ -27,6 +27,7 @@ TOOL_BACK = "draw the tool back, write G49 before, which may move it, and G43 af
 PLAIN = "write G15 before, the place in plain coordinates, and G16 again behind"
 PLACE = "write it under G90, with its place in the machine"
 CLEAR = "write G0 in this block if the way is clear, or G1"
+ALONE = "write it in a block of its own"
 RAPID = "write G0 in this block if the way is clear, and G1 again behind it"
 
 
@@ -38,6 +39,8 @@ def own_moves(track: Track, line: int) -> Own | None:
             _refuse_polar(track, line, act.code)
         if act.name == CALL:
             return _called(track, line)
+        if act.name == "orient":
+            return _oriented(track, line, act.code)
         if act.name == "home":
             return _home(track, line, _reference(track, line, act))
         if act.name == "probe":
@@ -243,6 +246,20 @@ def _target(track: Track, line: int) -> dict[str, float]:
 def is_rapid(track: Track) -> bool:
     """Whether G53 moves in rapid whatever is in force, so that it may not stand under G1."""
     return track.dialect.motion_rule.g53_is_rapid and not track.lines.reading.same_words
+
+
+def _oriented(track: Track, line: int, code: str) -> Own:
+    """G53.1: the rotary axes turn in rapid until the tool stands on the plane."""
+    if track.words_on(line):
+        track.findings.add(line, "GX213", f"{code} beside words of axes", hint=ALONE)
+    if int(track.modes.motion[line]) != Kind.RAPID:
+        message = f"{code} under a feed move: the axes may turn at the feed"
+        track.findings.add(line, "GX213", message, hint="write G0 before")
+    plane, end = track.state.frames.plane, track.state.position.tolist()
+    for axis, angle in plane.angles.items() if plane is not None else ():
+        end[track.axes.index(axis)] = _in_frame(track, track.axes.index(axis), angle)
+    form = Form.PLAIN if track.lines.reading.turns_plainly else Form.MACHINE
+    return _rows(track, line, form, [(Kind.RAPID, end)])
 
 
 def _in_machine(track: Track, line: int) -> Own:

@@ -23,6 +23,7 @@ from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
+from gcxform.modal.moves.in_planes import InPlanes
 from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.open_centres import refuse_open_centres
 from gcxform.modal.moves.passages import Passages
@@ -54,6 +55,7 @@ class Moves:
         self.tied = Tied(self.track)
         self.shifted: Shifted | None = None
         self.passages: Passages | None = None
+        self.in_planes: InPlanes | None = None
         self.side, self.radius = compensation(lines, modes)
         vectors = self.dialect.tip_rule.takes_vectors
         self.pointing = Pointing(lines, modes, axes) if vectors else None
@@ -74,7 +76,10 @@ class Moves:
         self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
-        if len(of.borders) > 1 and not (lost.any() or of.lost or self.lines.kept_calls):
+        planes = InPlanes(self.track, of, self.lines.flag("own_moves"), lost)
+        self.in_planes = planes if planes.any else None
+        together = not (lost.any() or of.lost or self.lines.kept_calls or planes.any)
+        if len(of.borders) > 1 and together:
             self.shifted = Shifted(self.track, moving)
             if not self._new_units:
                 self.passages = Passages(self.drilling, of, moving)
@@ -245,12 +250,12 @@ class Moves:
         self._refuse_other_units(first, first + 1)
         if first in of.resets:
             self.track.reset_work(first)
-        if first in of.leaving or (first + 1 in of.leaving and first in of.acts):
-            self.track.lose_all(first)
-        if first in of.lost:
-            self.track.lose(first, of.lost[first])
+        self._lose_before(first, of)
         if first in of.acts:
             self.track.act(first)
+        if self.in_planes is not None:
+            self.in_planes.check(first, last, first in of.acts)
+        if first in of.acts:
             own = own_moves(self.track, first)
             if own is not None:
                 self.drilling.moved()
@@ -268,6 +273,13 @@ class Moves:
         rows = np.flatnonzero(moving[first:last]) + first
         ends = self.track.along(first, last, rows, lost)
         return self._plain(rows, ends, constant(len(self.track.frames) - 1, len(rows), np.int64))
+
+    def _lose_before(self, first: int, of: Stretches) -> None:
+        """Let go of what the first line of a stretch does not know any more."""
+        if first in of.leaving or (first + 1 in of.leaving and first in of.acts):
+            self.track.lose_all(first)
+        if first in of.lost:
+            self.track.lose(first, of.lost[first])
 
     def _plain(self, line: Ints, ends: Floats, frame: Ints) -> Rows:
         """Return rows that are one plain move a line, threads and splines among them."""

@@ -11,7 +11,7 @@ import numpy as np
 import gcxform as gx
 
 LENGTHS = frozenset("XYZUVWIJKR")
-FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror"})
+FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror", "define-plane"})
 """What codes do that are not written where they are folded into the words of moves."""
 KEPT = "the words of {} are in inches, stay, and would be read as mm"
 SURFACE = "S is in feet a minute under G96, stays, and would be read as metres"

@@ -1,0 +1,180 @@
+"""Planes in space (G68.2, G53.1) on a table that turns: where words lead in them.
+
+G68.2 says a plane in the work offset in force, and moves nothing: a zero, and Euler angles I, J, K
+about Z, X' and Z''. G53.1 turns the rotary axes until the tool stands on the plane, which the table
+takes along; from there on words count in it, until G69. With w a point of the workpiece where all
+rotary axes are at 0, and M_T what the table does (`gcxform/machine/chain.py`),
+
+    w = zero of the work offset + zero of the plane + Rz(I) Rx(J) Rz(K) word
+    position = M_T(q) w - gauge point + tool
+
+The tool stands along Z, so that of the plane a turn about Z is left, and arcs stay arcs. Of two
+attitudes the control takes that with the least way of the axis next to the base, then of the other
+one, then the one that stands nearer to 0.
+
+Sources: Fanuc B-63942EN/02 p. 248 and B-63944EN/02 p. 719 (angles, zero, and that the plane goes
+with the table), A-78712E/04 pp. 61-62 (attitudes). The order and the sense of the angles are those
+of two programs that a CAM wrote of one part for two machines. What no manual says is refused: moves
+between G68.2 and G53.1, a head that turns, an attitude in which an axis is free.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gcxform.machine.chain import Chain
+from gcxform.machine.inverse import State, attitudes, turns
+from gcxform.modal.frame_state import (
+    FrameState,
+    TiltedPlane,
+    matrix_of,
+    replace,
+    rotation,
+    vector_of,
+)
+from gcxform.modal.frames.act import ActError, Asked
+from gcxform.system.arrays import Floats
+
+FLAT = 1e-9  # the sine of what may be between the tool and the plane it stands on
+EQUAL, APART = 1e-6, 0.01  # degrees: ways that are the same, and ways that are not for certain
+TURN = 360.0
+LEAVE = "write G69 before"
+IN_PLANE = frozenset(
+    {
+        *("length", "length-negative", "length-number", "no-length", "change-tool", "set-tool"),
+        *("user-code", "call", "orient", "no-rotate", "home", "machine", "probe"),
+    }
+)
+"""Acts that leave a plane where it is."""
+
+
+def check_in_plane(state: FrameState, name: str, code: str) -> None:
+    """Refuse an act that would change what a plane counts from. Raises ActError."""
+    if state.plane is not None and name not in IN_PLANE:
+        raise ActError("GX213", f"{code} in a tilted plane is not followed", LEAVE)
+
+
+def out_of_plane(state: FrameState, failed: str) -> FrameState:
+    """Return the state behind an act that failed: of words in no plane nothing need be said."""
+    return replace(state, plane=None) if failed == "orient" else state
+
+
+def define(state: FrameState, asked: Asked) -> FrameState:
+    """G68.2: a plane in the coordinates of the work offset."""
+    if state.turns or state.polar or any(state.rotation.values()):
+        raise ActError("GX213", f"{asked.code} upon coordinates that are turned is not followed")
+    if asked.written.get("P") or {"Q", "R"} & asked.written.keys():
+        raise ActError("GX213", f"{asked.code} is followed by three Euler angles alone: I, J, K")
+    missing = [word for word in "XYZIJK" if word not in asked.written]
+    if missing or set(asked.axes) - {*"XYZ"}:
+        what = f"without {', '.join(missing)}" if missing else "with words of rotary axes"
+        raise ActError("GX213", f"{asked.code} {what} is not followed")
+    i, j, k = (asked.written[letter] for letter in "IJK")
+    about_z, about_x, again = (
+        np.array(turn) for turn in (rotation(i, 0, 1), rotation(j, 1, 2), rotation(k, 0, 1))
+    )
+    zero = np.array(state.zero_of(state.work))[:3] + state.preset[:3] + state.local[:3]
+    zero += [asked.words[axis] for axis in "XYZ"]
+    if state.adrift or not np.isfinite(zero - state.machine[:3]).all():
+        raise ActError(
+            "GX213",
+            f"where the table takes the plane of {asked.code} depends on where {state.work} is",
+            f"say its place in the machine: [work-offset.{state.work}] in the machine file",
+        )
+    return replace(state, plane=TiltedPlane(matrix_of(about_z @ about_x @ again), vector_of(zero)))
+
+
+def orient(state: FrameState, asked: Asked) -> FrameState:
+    """G53.1: the rotary axes turn until the tool stands on the plane, and take it along."""
+    chain, plane = asked.reading.tables, state.plane
+    assert chain is not None  # else no code has this act
+    if plane is None or plane.angles:
+        raise ActError("GX213", f"{asked.code} without a plane that G68.2 has said before")
+    tilted, base = np.array(plane.turned), np.array(state.machine[:3])
+    angles = _attitude(chain, tilted, _standing(chain, state, asked), asked)
+    turned = _carried(chain, tilted, angles)
+    if np.abs(turned[2] - [0.0, 0.0, 1.0]).max() > FLAT:
+        raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
+    gauge = np.array(chain.tip)
+    zero = chain.onto_machine(np.array(plane.zero) - base + gauge, angles) - gauge + base
+    said = {axis: float(angle) for axis, angle in zip(chain.letters, angles, strict=True)}
+    about_z = rotation(_spin(turned), 0, 1)
+    return replace(state, plane=TiltedPlane(about_z, vector_of(zero), said))
+
+
+def _carried(chain: Chain, matrix: Floats, angles: Floats) -> Floats:
+    """Return directions (3, 3), in columns, as the table carries them."""
+    points = chain.onto_machine(np.vstack([matrix.T, np.zeros(3)]), np.tile(angles, (4, 1)))
+    return np.asarray((points[:3] - points[3]).T)
+
+
+def _spin(turned: Floats) -> float:
+    """Return by how much the X of a plane is turned from that of the machine, degrees."""
+    return float(np.degrees(np.arctan2(turned[1, 0], turned[0, 0])))
+
+
+def _standing(chain: Chain, state: FrameState, asked: Asked) -> Floats:
+    """Return where the rotary axes stand in the machine, degrees."""
+    found = np.full(len(chain.axes), np.nan)
+    for n, axis in enumerate(chain.axes):
+        if axis.letter in state.axes:
+            k = state.axes.index(axis.letter)
+            found[n] = asked.position[k] - state.machine[k]
+            if abs(state.zero_of(state.work)[k] - state.machine[k]) > EQUAL:
+                message = f"{asked.code}: {state.work} turns {axis.letter}, and the plane with it"
+                raise ActError("GX213", message, "say the plane in a work offset that does not")
+        if np.isnan(found[n]):
+            raise ActError(
+                "GX213",
+                f"which attitude {asked.code} takes depends on where {axis.letter} stands",
+                f"write {axis.letter} before, or say start = {{ {axis.letter} = ... }} in [input]",
+            )
+        if axis.limits is None and axis.wrap is None:
+            raise ActError(
+                "GX213",
+                f"which attitude {asked.code} takes depends on how far {axis.letter} turns",
+                f"say limits, or wrap, in [axis.{axis.letter}] of the machine file",
+            )
+    return found
+
+
+def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> Floats:
+    """Return the angles (axes,) that the control takes. Raises ActError."""
+    found = attitudes(chain, tilted[:, 2][None, :])
+    state = State(int(found.state[0]))
+    if state is State.UNREACHABLE:
+        raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
+    if state is State.POLE:
+        assert found.free is not None
+        found.angle[..., found.free] = standing[found.free]
+    angles, allowed = turns(chain, found.angle)
+    wraps = np.array([axis.limits is None for axis in chain.axes])
+    nearest = angles[0] + TURN * np.round((standing - angles[0]) / TURN)
+    angles = np.where(wraps, nearest, angles[0])[allowed[0]]
+    if not len(angles):
+        raise ActError("GX213", f"{asked.code}: no attitude is within the limits of the axes")
+    angles = _nearest(angles, standing, asked)
+    if state is State.POLE and abs(_spin(_carried(chain, tilted, angles))) > EQUAL:
+        raise ActError(
+            "GX213",
+            f"{asked.code}: {chain.letters[found.free or 0]} is free in this plane, and no manual "
+            "says whether it turns",
+            "let the CAM turn X of the plane along X of the machine, or write it without a plane",
+        )
+    return angles
+
+
+def _nearest(angles: Floats, standing: Floats, asked: Asked) -> Floats:
+    """Return the attitude (axes,) with the least way, axis by axis, then that nearest to 0."""
+    ways = np.abs(angles - standing)
+    from_zero = np.abs(angles - TURN * np.round(angles / TURN))
+    left = np.arange(len(angles))
+    for column in (*ways.T, *from_zero.T):
+        beyond = column[left] - column[left].min()
+        if ((beyond > EQUAL) & (beyond < APART)).any():
+            break
+        left = left[beyond <= EQUAL]
+    if np.ptp(angles[left], axis=0).max() > EQUAL:
+        message = f"{asked.code}: two attitudes are equally near, and which is taken is not certain"
+        raise ActError("GX213", message, "turn the axes near to the one that is meant before")
+    return np.asarray(angles[left[0]])

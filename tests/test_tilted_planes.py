@@ -1,0 +1,108 @@
+"""Planes in space on tables that turn: against published poses, and by quaternions."""
+
+from __future__ import annotations
+
+import csv
+import random
+import re
+from pathlib import Path
+
+import pytest
+from quaternions import Device, Line, linear_for, rotated
+
+import gcxform as gx
+from gcxform.machine.file import load_machine
+from gcxform.machine.machine import Machine
+from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+
+TOOL = 150.0
+AXES = {
+    "AC_table": [("A", (1, 0, 0), (0, -20, -60)), ("C", (0, 0, 1), (10, 5, 0))],
+    "BC_table": [("B", (0, 1, 0), (15, 0, -80)), ("C", (0, 0, 1), (-5, 8, 0))],
+    "nutB_C_table45": [("B", (0, 1, 1), (0, -30, -90)), ("C", (0, 0, 1), (0, 0, 0))],
+}
+"""The tables of `../shared/data/planes/README.md`, from the base outwards, with sign -1."""
+FREE = "is free in this plane"
+
+
+def machine(tmp_path: Path, name: str, work: list[float], gauge: tuple[float, ...]) -> Machine:
+    lines = ["format = 1", f"table = {[axis[0] for axis in AXES[name]]}", "[tool.1]"]
+    lines += [f"length = {TOOL}", "[work-offset.G54]"]
+    lines += [f"{axis} = {place!r}" for axis, place in zip("XYZ", work, strict=True)]
+    for letter, direction, point in AXES[name]:
+        lines += [f"[axis.{letter}]", f"direction = {[float(d) for d in direction]}"]
+        lines += [f"point = {[float(p) for p in point]}", "sign = -1", "limits = [-360.0, 360.0]"]
+    lines.insert(1, f"gauge-point = {list(gauge)}")
+    file = tmp_path / "machine.toml"
+    file.write_text("\n".join(lines) + "\n", "utf-8")
+    return load_machine(file)
+
+
+def reached(machine: Machine, rotary: str, plane: str, point: str) -> list[float]:
+    """Return where X, Y and Z of the machine stand at a point of a plane, and the rotary axes."""
+    text = f"G21 G90 G54 G17 G0\n{rotary}\n{plane}\nG53.1\nG43 H1 {point}\nM30\n"
+    fanuc = default_registry().dialect("fanuc")
+    path = gx.Program(text.encode(), fanuc, Reading().on(machine)).path
+    work = machine.work_offsets["G54"]
+    return [path.end[-1][k] + work.get(axis, 0.0) for k, axis in enumerate(path.axes)]
+
+
+def test_published_poses(shared: Path, tmp_path: Path) -> None:
+    """All poses of tables: 26 of two attitudes and one with a free axis; the other is refused."""
+    file = shared / "data" / "planes" / "vectors.csv"
+    rows = [*csv.DictReader(file.read_text("utf-8").splitlines())]
+    rows = [row for row in rows if row["machine"] in AXES and "G68.2" in row["statement"]]
+    rows = [row for row in rows if "K" not in row["evidence"].split(";")]
+    good, free = 0, list[str]()
+    for row in rows:
+        work = [float(row[f"work_{axis}"]) for axis in "xyz"]
+        device = machine(tmp_path, row["machine"], work, (0.0, 0.0, 0.0))
+        plane = re.sub(r"([IJK]-?\d+)(?= |$)", r"\1.", row["statement"].split("; ")[1])
+        point = " ".join(f"{axis}{float(row['p' + axis.lower()])}" for axis in "XYZ")
+        for n in "12":
+            if not row[f"sol{n}"]:
+                continue
+            try:
+                found = reached(device, row[f"sol{n}"], plane, point)
+            except gx.GcxformError as error:
+                free.append(f"{row['status']}: {error}")
+            else:
+                assert found[:3] == pytest.approx([*map(float, row[f"xyz{n}"].split())], abs=2e-6)
+                good += 1
+    assert good == 27
+    assert [FREE in said and said.startswith("pole") for said in free] == [True]
+
+
+def by_quaternions(name: str, gauge: tuple, work: list, plane: list, point: list, angles: list):
+    """Return X, Y and Z of the machine for a point of a plane, without numpy or the package."""
+    x, y, z, i, j, k = plane
+    way = rotated(point, (0, 0, 1), k)
+    way = rotated(rotated(way, (1, 0, 0), j), (0, 0, 1), i)
+    tip = tuple(w + g + o + v for w, g, o, v in zip(work, gauge, (x, y, z), way, strict=True))
+    lines = [Line(letter, "T", axis, place, -1) for letter, axis, place in AXES[name]]
+    held = (gauge[0], gauge[1], gauge[2] - TOOL)
+    return linear_for(Device(name, held, lines), tip, angles)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_point_of_a_plane_is_where_quaternions_say(seed: int, tmp_path: Path) -> None:
+    draw = random.Random(seed)
+    name = draw.choice([*AXES])
+    gauge = tuple(draw.uniform(-50, 50) for _ in "XYZ")
+    work, plane, point = ([round(draw.uniform(-80, 80), 3) for _ in range(n)] for n in (3, 3, 3))
+    plane += [
+        round(draw.uniform(low, high), 3) for low, high in ((-179, 179), (5, 85), (-179, 179))
+    ]
+    start = [round(draw.uniform(-90, 90), 2) for _ in "AC"]
+    letters = [axis[0] for axis in AXES[name]]
+    said = " ".join(f"{letter}{angle}" for letter, angle in zip(letters, start, strict=True))
+    words = " ".join(f"{a}{v}" for a, v in zip("XYZIJK", plane, strict=True))
+    there = " ".join(f"{a}{v}" for a, v in zip("XYZ", point, strict=True))
+    found = reached(machine(tmp_path, name, work, gauge), said, f"G68.2 {words}", there)
+    want = by_quaternions(name, gauge, work, plane, point, found[3:])
+    assert found[:3] == pytest.approx(want, abs=1e-7)
+    normal = rotated(rotated((0, 0, 1), (1, 0, 0), plane[4]), (0, 0, 1), plane[3])
+    for (_, axis, _), angle in reversed([*zip(AXES[name], found[3:], strict=True)]):
+        normal = rotated(normal, axis, -angle)
+    assert normal == pytest.approx((0, 0, 1), abs=1e-8)
