@@ -31,7 +31,7 @@ D_IS: Final = "d-is"
 COMP_CORNERS: Final = "cutter-comp-corners"
 COMP_ENTRY: Final = "cutter-comp-entry"
 """The settings that say how the control resolves a contour under cutter compensation."""
-HOME: Final = re.compile(r"G28|G30( P[0-9]+)?|M140")
+HOME: Final = re.compile(r"G28|G30( P[0-9]+)?|M140|M92")
 WORK_OFFSET: Final = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+|G15 H[0-9]+")
 """The names of homes and of work offsets that a machine file takes."""
 _OWN_CODE = re.compile("M[1-9][0-9]{2,3}")

@@ -288,7 +288,7 @@ def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnost
                 "GX436",
                 f"{code!r} is not a home position",
                 where,
-                'known: G28, G30, "G30 P2", M140',
+                'known: G28, G30, "G30 P2", M140, M92',
             )
         yield from _strange_axes(document, file, ("home", code), place)
 

@@ -114,7 +114,10 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     ] = {}
     home: Annotated[
         dict[str, Offset],
-        says("where a reference point, or the end of travel, is in the machine: G28, G30, M140"),
+        says(
+            "where in the machine a reference point is, the end of travel, or the point that M92 "
+            "counts from: G28, G30, M140, M92"
+        ),
     ] = {}
     tool: Annotated[dict[str, Tool], says("a tool by its number, that of T or of H")] = {}
     tool_table: Annotated[str | None, says("a tool table of a control: a file")] = None

@@ -23,16 +23,19 @@ from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
-CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)\s*")
+CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)(?:\s*M)?\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(
     rf"Q(\d{{1,4}})\s*=\s*"
-    rf"(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?=[\s~]|$)|F?\s*(AUTO)(?=[\s~]|$)|\S*)"
+    rf"(?:({VALUE})(?![\w.,])|([+-]?\s*Q[LR]?\d{{1,4}})(?=[\s~]|$)|F?\s*(AUTO|MAX)(?=[\s~]|$)|\S*)"
 )
 PARAMETER_LINE = re.compile(r"[\s\d]*Q[2-4]\d\d\s*=")
 PECKS = ("DIST", "DEPTH", "PECKING DEPTH", "DWELL", "F")
-FEEDS = 206, 208
+BACK = 208
+FEEDS = 206, BACK
+RAPID = Decimal("Infinity")
+"""What MAX is worth as the feed back."""
 AUTO = "AUTO"
 STROKES = 200, 205
 SLOWLY = 201, 203
@@ -185,7 +188,9 @@ class Cycles(Datums):
             if value:
                 told[number] = Decimal(plain(value))
             self.q[f"Q{number}"] = float(told[number]) if value else None
-            if found[4] and number in FEEDS and self.tool_feed:
+            if found[4] == "MAX" and number == BACK:
+                told[number] = RAPID
+            elif found[4] == AUTO and number in FEEDS and self.tool_feed:
                 told[number] = Decimal(self.tool_feed)
                 self.refers.add(AUTO)
         return told
@@ -248,8 +253,8 @@ class Cycles(Datums):
                 blocks += [f"G0 Z{exact(up)}", *_waits(told.get(210)), f"Z{exact(near)}"]
             blocks.append(f"G1 Z{exact(surface - at)}{self.feed_word(exact(feed))}")
         blocks += _waits(told[211])
-        if self.cycle in SLOWLY:
-            blocks.append(f"Z{exact(up)}{self.feed_word(exact(told[208] or feed))}")
+        if self.cycle in SLOWLY and told[BACK] != RAPID:
+            blocks.append(f"Z{exact(up)}{self.feed_word(exact(told[BACK] or feed))}")
         return self._out(blocks, exact(surface + high) if high else exact(up))
 
     def _tapped(self, item: gx.Item, told: Mapping[int, Decimal]) -> list[str]:

@@ -9,6 +9,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | F | stays in force; FMAX is for its block only, and F before it holds again | [K] |
 | F in inches | tenths of an inch per minute; degrees where only rotary axes move | 640, p. 343 |
 | FAUTO, and AUTO as Q206 or Q208 | the feed of the last TOOL CALL | [K] |
+| MAX as Q208 | out in rapid | programs of a CAM |
+| R, F, M without a number | nothing was entered; R beside a contour: refused | programs |
 | `IX+5` | from where X stands; others in the block may be absolute | TNC 407, p. 5-44 |
 | CC | `IX` from the last place of the tool, nothing: that place | TNC 360, p. 5-16 |
 | C | about CC; the end may be 0.016 mm off; end as start: a full circle | TNC 320, p. 155 |
@@ -34,7 +36,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
-| M92, M94, M116, M140 MB 5, M144 and their like | refused | |
+| M92 | as M91, from a point that [home.M92] of the machine file says | TNC 426 B, p. 122 |
+| M94, M116, M140 MB 5, M144 and their like | refused | |
 | M140 MB MAX | to the end of travel along Z, as a move in the machine: [home.M140] | [K] |
 | M126 | shorter way on axes that show less than 360: from 180 refused, or unknown | 620, p. 566 |
 | M128 | from the start of its block; its F limits other moves | TNC 410, p. 169 |
@@ -85,7 +88,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | FN 14, 17, 19, 20, 29 and others | refused | |
 | Q200 to Q211 set behind cycle 200 | whether it then counts is not known: refused | |
 | CALL PGM, SEL PGM | `NAME.H` beside the program; Q are the same there, QL its own | 640, p. 102 |
-| a line without a number behind `~`, but of a cycle or a pattern | refused | |
+| a line without a number behind `~`, but of a cycle, a pattern or a formula | refused | |
 | lines in brackets before BEGIN PGM | are none of the program | |
 | a number of more than 20 characters | refused | |
 | a file without END PGM, M2 or M30 | refused: it breaks off | |

@@ -17,7 +17,9 @@ from gcxform_plugins.dialects.heidenhain.parameters import NAMED
 from gcxform_plugins.dialects.heidenhain.words import MM, exact, goes_on, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
-OWN_NAME = re.compile(r"BEGIN\s+PGM\s+([^\s;]+)\s+(?:MM|INCH)", re.IGNORECASE)
+OWN_NAME = re.compile(
+    r"BEGIN\s+PGM\s+([^\s;]|[^\s;][^;]*?[^\s;])\s+(?:MM|INCH)\s*(?:;|$)", re.IGNORECASE
+)
 END = re.compile(r"END\s+PGM\b(?:.*?\b(MM|INCH))?.*")
 TOOL = re.compile(rf"TOOL\s+DEF\s*(\d{{1,9}})(?:\s+L\s*({VALUE}))?(?:\s+R\s*({VALUE}))?\s*")
 FETCHED = re.compile(r'TOOL\s+DEF\s*"([^"]*)"\s*$', re.IGNORECASE)

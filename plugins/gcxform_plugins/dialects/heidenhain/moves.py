@@ -154,7 +154,7 @@ class Moves(Saying):
         for item in said.axes:
             if item.name[0] in "IP":
                 self.refuse(f"{item.name} counts from the last block with M91", item)
-            words += f" {item.name}{self.number_of(item)}"
+            words += f" {item.name}{self._from_point(said, item)}"
             self.lose(item.name)
             self.moved |= {item.name} & set(ROTARY)
         if self.turn != 0 or self.mirrored is None:
@@ -165,6 +165,19 @@ class Moves(Saying):
             return said.feed.strip()
         self.motion = "G0" if said.rapid else "G1"
         return f"G53 {self.motion}{words}{said.feed}"
+
+    def _from_point(self, said: Said, item: gx.Item) -> str:
+        """Return where in the machine a coordinate is, that may count from the point of M92."""
+        number = self.number_of(item)
+        if said.counts_from is None:
+            return number
+        point = said.counts_from.get(item.name)
+        if point is None:
+            hint = f"{item.name} = ... in [home.M92] of the machine file says it"
+            self.refuse(f"M92: from where {item.name} counts is not known", item, hint)
+        if self.inch and item.name not in ROTARY:
+            point /= MM
+        return written(Decimal(number) + Decimal(repr(point)))
 
     def retracted(self, item: gx.Item) -> list[str]:
         """M140 MB MAX: to the end of travel along the tool axis, where the machine file says it."""

@@ -98,10 +98,11 @@ class Parameters(Labels):
         if match is not None and int(match[1]) not in {*SETS, *JUMPS}:
             return self._other_function(item, int(match[1]), match[2])
         self.computes = True
+        text = self._whole(item.name)
         try:
-            node: Any = self.grammar_of_formulas.parse(item.name).children[0]
+            node: Any = self.grammar_of_formulas.parse(text).children[0]
         except UnexpectedInput:
-            if TEXTS.search(item.name):
+            if TEXTS.search(text):
                 self._forget(item.name, item)
                 return []
             raise self.refusal("GX101", f"{item.name.strip()[:40]} is no formula", item) from None
@@ -109,6 +110,13 @@ class Parameters(Labels):
             return self._execute(item, node)
         except v.NoValueError as why:
             raise self.refusal(why.code, why.message, item, why.hint) from None
+
+    def _whole(self, text: str) -> str:
+        """Return a formula with the lines that go on with it, which are passed."""
+        while text.rstrip().endswith("~") and self.at < len(self.lines):
+            text = f"{text.rstrip()[:-1]} {self.lines[self.at].upper().partition(';')[0]}"
+            self.at += 1
+        return text
 
     def _execute(self, item: gx.Item, node: Node) -> list[str]:
         """Take FN 9 to 12, or set a parameter. Raises NoValueError where that has no value."""

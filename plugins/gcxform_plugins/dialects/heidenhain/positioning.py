@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import gcxform as gx
@@ -18,6 +18,7 @@ LEAVES_SPINDLE = frozenset({1, 7, 8, 9, 91, 99, 126, 127, 128, 129})
 TELLS_SPINDLE = frozenset({0, 2, 3, 4, 5, 6, 13, 14, 30})
 LONGEST_M = 4  # digits
 MACHINE = 91
+BUILDERS = 92
 CHANGES = 6
 STOPS, LEAVES_TIP = 0, 129
 NEVER_BESIDE = (6, 91, 128, 129)
@@ -28,6 +29,7 @@ ROUNDS = 90
 MOVES_ZERO = frozenset({115, 145})
 """Those of them behind which coordinates are others, if what they cancel has been."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
+POINT_OF_M92 = "X, Y, Z = ... in [home.M92] of the machine file say where, in its coordinates"
 WHY = {
     89: "it calls a cycle behind each block",
     92: "it counts from a point of the machine that its builder has set",
@@ -53,7 +55,10 @@ WHY = {
 
 @dataclass(slots=True)
 class Said:
-    """What a block says. `feed` is its F word, `before` and `after` are blocks of M functions."""
+    """What a block says. `feed` is its F word, `before` and `after` are blocks of M functions.
+
+    `machine` is M91, or M92, which counts from the place `counts_from`.
+    """
 
     axes: list[gx.Item] = field(default_factory=list)
     feed: str = ""
@@ -62,6 +67,7 @@ class Said:
     side: gx.Item | None = None
     radius: str = ""
     machine: gx.Item | None = None
+    counts_from: Mapping[str, float] | None = None
     leaves: bool = False
     calls: gx.Item | None = None
     changes: bool = False
@@ -115,9 +121,19 @@ class Saying(Words):
             self.refuse(f"{item.name} is a feed per turn or per tooth", item)
         elif item.kind == "comp":
             self._side(item, said)
+        elif item.kind == "bare":
+            self._bare(item)
         else:
             text = item.name.strip()
             raise self.refusal("GX101", f"{text[:20]!r} does not fit here", item)
+
+    def _bare(self, item: gx.Item) -> None:
+        """Take R, F or M without a number, as old controls list what was not entered.
+
+        Whether R is then R0, or the side as before, is certain only where both are the same.
+        """
+        if item.name.upper() == "R":
+            self.refuse_beside("R alone", item)
 
     def _radius(self, item: gx.Item, said: Said) -> None:
         """Take the radius of CR, or R0."""
@@ -148,8 +164,8 @@ class Saying(Words):
             self.refuse_beside(f"M{code}", item)
         if code == CHANGES:
             self.check_along("M6, which changes the tool as the machine's builder has it", item)
-        if code == MACHINE:
-            said.machine = item
+        if code in (MACHINE, BUILDERS):
+            self._in_the_machine(code, item, said)
         elif code == CALLS:
             said.calls = item
         elif code in ENDS:
@@ -166,6 +182,17 @@ class Saying(Words):
         else:
             said.before += self._at_start(code, item)
         return code
+
+    def _in_the_machine(self, code: int, item: gx.Item, said: Said) -> None:
+        """Take M91, or M92 where the machine file says from where that counts."""
+        if said.machine:
+            raise self.refusal("GX203", "M91 or M92 stands here twice", item)
+        said.machine = item
+        if code == MACHINE:
+            return
+        said.counts_from = self.reading.homes.get("M92")
+        if self.reading.stays or not said.counts_from:
+            self.refuse(f"M92 is not resolved: {WHY[BUILDERS]}", item, POINT_OF_M92)
 
     def _silent(self, code: int, item: gx.Item) -> list[str]:
         """Return the block of an M function that moves nothing, where it goes along."""

@@ -18,7 +18,7 @@ from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_o
 from gcxform_plugins.dialects.heidenhain.positioning import SHORTEST, SILENT
 from gcxform_plugins.dialects.heidenhain.runs import Runs
 from gcxform_plugins.dialects.heidenhain.spelling import STEPPED, STEPPED_AT, code, spelled
-from gcxform_plugins.dialects.heidenhain.words import goes_on
+from gcxform_plugins.dialects.heidenhain.words import goes_on, plain
 from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
 ROUNDED = re.compile(r"[\s\d/]*(?:RND|CHF|CTP?|FLT|FCT|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
@@ -269,7 +269,7 @@ class Programs(Runs):
 
 
 def _is_off(item: gx.Item) -> bool:
-    return item.kind == "radius" and bool(item.numbers) and not float(item.numbers[0])
+    return item.kind == "radius" and bool(item.numbers) and not float(plain(item.numbers[0]))
 
 
 def _is_said(item: gx.Item) -> bool:
