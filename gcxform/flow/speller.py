@@ -17,6 +17,8 @@ ALONG = "M9001"
 """The code of a block with asides: it makes them an event, which moves keep their place by."""
 NAMED = "\x04"
 """What an aside begins with that is the name of the tool which T of its block is."""
+TOLD = "\x05"
+"""What an aside begins with that is told of that tool where it is called."""
 HIDDEN, SHOWN = str.maketrans("()", "\x02\x03"), str.maketrans("\x02\x03", "()")
 
 
@@ -34,13 +36,15 @@ class Speller(ABC):
     Whatever comes out is read again by the grammar of the language, and has to be the same program.
 
     `inert` are M codes that leave the axes where they stand; `tool_name` is that of the T in the
-    block that was heard last, if its program called it so. `asides`: what goes along as it was
+    block that was heard last, if its program called it so, `tool_told` what is told of it there.
+    `asides`: what goes along as it was
     programmed stands in comments, which nobody else than a translator can have written.
     """
 
     inert: frozenset[str] = frozenset()
     asides: bool = False
     tool_name: str = ""
+    tool_told: str = ""
 
     def __init__(self, name: str, inch: bool) -> None:
         self.name = name
@@ -65,6 +69,11 @@ class Speller(ABC):
         """Return what goes along as it was programmed, in a block whose moves keep their place."""
         return f"{ALONG} {cls.aside(text)}"
 
+    @classmethod
+    def told(cls, text: str) -> str:
+        """Return what is told of the tool of a block, as it goes along."""
+        return cls.aside(f"{TOLD}{text}")
+
     def heard(self, block: str) -> tuple[list[str], list[str], list[tuple[str, str]]]:
         """Return what goes along as it was programmed, the other comments, and the words."""
         comments, words = self.parts(block)
@@ -72,7 +81,8 @@ class Speller(ABC):
             return [], comments, words
         asides = [each[1:].translate(SHOWN) for each in comments if each.startswith(ASIDE)]
         self.tool_name = next((each[1:] for each in asides if each.startswith(NAMED)), "")
-        asides = [each for each in asides if not each.startswith(NAMED)]
+        self.tool_told = next((each[1:] for each in asides if each.startswith(TOLD)), "")
+        asides = [each for each in asides if not each.startswith((NAMED, TOLD))]
         words = [each for each in words if not asides or each != (ALONG[0], ALONG[1:])]
         return asides, [each for each in comments if not each.startswith(ASIDE)], words
 

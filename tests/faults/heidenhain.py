@@ -50,6 +50,20 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: the oversize of a tool is gone where it is called again",
+        LINES,
+        "            behind = self.deltas\n",
+        "            behind = ''\n",
+        f"{COMPENSATED}-oversize]",
+    ),
+    Mutation(
+        "klartext: an oversize in inches goes along into a program in mm",
+        "plugins/gcxform_plugins/dialects/heidenhain/fetching.py",
+        "if told and (unit == INCHES) != inch:",
+        "if told and inch and unit != INCHES:",
+        f"{COMPENSATED}-oversize-in-mm]",
+    ),
+    Mutation(
         "klartext: M92 counts from the zero of the machine",
         MOVES,
         "return written(Decimal(number) + Decimal(repr(point)))",

@@ -49,6 +49,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | TOOL CALL | tool, length, S, F; without number S and F only | [K] |
 | TOOL CALL "NAME" | the tool that the machine file calls so; to a TNC any goes along | |
 | its DL, DR | added to length and radius, which must be known; DR2: refused | iTNC 530, p. 183 |
+| DL and DR to a TNC | go along in TOOL CALL; a length that is not known stays so | |
 | TOOL DEF | no move; must not contradict the machine file; a number alone is T | iTNC 530, p. 183 |
 | tool 0 | has no length | 640, p. 170 |
 | CALL LBL n REP k | k more runs; `REP 10/10` is how old programs count | [K] |

@@ -11,6 +11,7 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import AUTO, Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.fetching import told_of
 from gcxform_plugins.dialects.heidenhain.lines import BEGIN_PGM
 from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
@@ -262,9 +263,10 @@ class Klartext(Cycles):
 
     def _length(self, item: gx.Item, tool: str) -> str:
         """Return the block of the length of a tool, with its DL."""
-        if not self.deltas.get("DL"):
-            return "G49" if tool == "0" else f"G43 H{tool}"
         known, unit = self.reading.tools.get(int(tool)), MM if self.inch else 1.0
+        open_ = known is None or isnan(known.length)
+        if not self.deltas.get("DL") or (open_ and self.reading.asides):
+            return "G49" if tool == "0" else f"G43 H{tool}"
         if known is None or isnan(known.length) or any(known.vector[:2]):
             hint = f"give a machine file with the tool: length = ... in [tool.{tool}]"
             self.refuse(f"DL of tool {tool}, whose length is not known", item, hint)
@@ -299,6 +301,8 @@ class Klartext(Cycles):
         if self.reading.stays:
             return [f"T{tool} M6"]
         beside = self.tool_names.beside(self.tool_name)
+        if self.reading.asides and self.deltas:
+            beside += f" {told_of(self.deltas, self.inch)}"
         return [f"T{tool} M6{beside}", self._length(item, tool)]
 
     def _tool_def(self, item: gx.Item) -> list[str]:

@@ -12,8 +12,13 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
-from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetched_ahead
+from gcxform_plugins.dialects.heidenhain.fetching import (
+    called_with_speed,
+    fetched_ahead,
+    words_of,
+)
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
+from gcxform_plugins.dialects.heidenhain.numerals import bare, coded, signed, worded
 from gcxform_plugins.dialects.heidenhain.words import exact
 
 BEGIN_PGM = "BEGIN PGM "
@@ -34,7 +39,9 @@ IN_INCHES = "P", "1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
-SIDES = {"G40": " R0", "G41": " RL", "G42": " RR"}
+SIDES = {"G40": " R0", "G41": " RL", "G42": " RR", "G41.1": " RL", "G42.1": " RR"}
+OF_DELTA = {"G43.1": "DL", "G41.1": "DR", "G42.1": "DR"}
+"""What TOOL CALL has to have told of the tool, where codes give its measures."""
 
 
 class Lines(gx.Speller):
@@ -43,6 +50,7 @@ class Lines(gx.Speller):
     place   where the axes stand, in numbers of the program; an axis that is not here is lost
     rounded by how much axes stand beside their words: a helix is said by an angle
     steps   G91 is in force;  tool: that of the last T word;  called: what that calls it
+    deltas  DL and DR of that tool, as TOOL CALL says them
     side    that of the last line;  waits: what was said since, for the next line in X and Y
     """
 
@@ -54,6 +62,7 @@ class Lines(gx.Speller):
         self.motion, self.plane = "G0", "G17"
         self.steps = self.over = self.bounded = False
         self.tool = self.called = self.in_spindle = self.speed = self.spindle = ""
+        self.deltas = ""
         self.side = self.waits = " R0"
         self.turns, self.shift = Decimal(0), dict.fromkeys(LINEAR, Decimal(0))
 
@@ -93,7 +102,7 @@ class Lines(gx.Speller):
         if asides and IN_INCHES in words and not self.inch:
             raise gx.UnspeakableError(f"{asides[0]}: in inches, as the program is no more", IN_MM)
         words = [each for each in words if not asides or each != IN_INCHES]
-        codes = [_code(*each) for each in words if each[0] in "GM"]
+        codes = [coded(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]
         if comment is not None and found and found[0].endswith("~"):
@@ -113,10 +122,10 @@ class Lines(gx.Speller):
             raise gx.UnspeakableError(f"{own[0]} has no words in Klartext")
         ahead = [c for c in functions if int(c[1:]) not in BEHIND]
         if "G64" in codes:
-            yield from self._tolerance(_plain(values.pop("P", "0")))
+            yield from self._tolerance(bare(values.pop("P", "0")))
         if "G4" in codes:
             yield "CYCL DEF 9.0 DWELL TIME"
-            yield f"CYCL DEF 9.1 DWELL {_plain(values.pop('P', '0'))}"
+            yield f"CYCL DEF 9.1 DWELL {bare(values.pop('P', '0'))}"
         yield from self._tools(codes, values)
         yield from (f"M{int(c[1:])}" for c in ahead)
         for code in functions:
@@ -159,19 +168,25 @@ class Lines(gx.Speller):
         """Yield TOOL CALL for T, M6 and S, TOOL DEF for a T that is fetched for the next change."""
         fetched = "T" in values and "M6" not in codes
         if "T" in values:
-            self.tool = _plain(values.pop("T"))
+            self.tool = bare(values.pop("T"))
             self.called = f'"{self.tool_name}"' if self.tool_name else self.tool
-        number, speed = "", f" S{_plain(values.pop('S'))}" if "S" in values else ""
+            self.deltas = words_of(self.tool_told, self.inch)
+        number, behind, speed = "", "", f" S{bare(values.pop('S'))}" if "S" in values else ""
         if "M6" in codes and not self.tool:
             raise gx.UnspeakableError("M6, and which tool it takes no T has said")
         if "M6" in codes:
             number, self.in_spindle = f" {self.called}", self.tool
+            behind = self.deltas
             if "M6" not in self.inert:
                 self.lose()
-        if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:
+        if "G43" in codes and bare(values.pop("H", self.in_spindle)) != self.in_spindle:
             raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+        if told := [c for c in codes if OF_DELTA.get(c, "") not in self.deltas]:
+            raise gx.UnspeakableError(f"{told[0]}, and TOOL CALL has told no {OF_DELTA[told[0]]}")
+        if "G43.1" in codes:
+            values.pop("Z", None)
         if number or speed:
-            yield f"TOOL CALL{number} Z{speed}"
+            yield f"TOOL CALL{number} Z{speed}{behind}"
         if fetched:
             yield f"TOOL DEF {self.called}"
 
@@ -196,7 +211,7 @@ class Lines(gx.Speller):
         if frame := next((code for code in codes if code in ("G52", "G68", "G69")), ""):
             yield from self._shifted(ends) if frame == "G52" else self._turned(ends, values)
         elif "G53" in codes:
-            yield f"L{_words(ends)} R0{self._rapid(feed)} M91"
+            yield f"L{worded(ends)} R0{self._rapid(feed)} M91"
             self._forget(ends)
         elif self.motion == TAP and ends:
             yield from self._tap(ends, Decimal(values.pop("K", "0")))
@@ -227,8 +242,9 @@ class Lines(gx.Speller):
     def _side(self, codes: list[str], values: dict[str, str]) -> str:
         """Return R0, RL or RR where a block says it. Raises UnspeakableError."""
         side = next((SIDES[code] for code in codes if code in SIDES), "")
-        radius = _plain(values.pop("D", self.in_spindle or "0")) if side else ""
-        if side not in ("", " R0") and radius != self.in_spindle:
+        radius = bare(values.pop("D", self.in_spindle or "0")) if side else ""
+        of_delta = not OF_DELTA.keys().isdisjoint(codes)
+        if side not in ("", " R0") and radius != self.in_spindle and not of_delta:
             raise gx.UnspeakableError("the radius of another tool than the one in the spindle")
         return side
 
@@ -255,9 +271,9 @@ class Lines(gx.Speller):
         words = ""
         for axis, value in ends.items():
             if self.steps and axis in self.rounded and axis in self.place:
-                words += f" {axis}{_signed(self.place[axis] + value)}"
+                words += f" {axis}{signed(self.place[axis] + value)}"
             else:
-                words += _words({axis: value}, "I" if self.steps else "")
+                words += worded({axis: value}, "I" if self.steps else "")
         self._stand(ends)
         return words
 
@@ -285,13 +301,13 @@ class Lines(gx.Speller):
         if radius is not None:
             if set(ends) - {"X", "Y"} or turns > 1:
                 raise gx.UnspeakableError("a helix by its radius has no words in Klartext")
-            yield f"CR{self._line(ends)} R{_signed(Decimal(radius))}{sense}{feed}"
+            yield f"CR{self._line(ends)} R{signed(Decimal(radius))}{sense}{feed}"
             return
         by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
         pole = {axis: self.place[axis] + by[axis] for axis in "XY"}
         ends = {axis: to for axis, to in ends.items() if axis in "XY" or not self._stays(axis, to)}
         if set(ends) <= {"X", "Y"} and turns == 1 and not (self.rounded and self._whole(ends)):
-            yield f"CC{_words(pole)}"
+            yield f"CC{worded(pole)}"
             yield f"C{self._line(ends)}{sense}{feed}"
             return
         yield from self._helix(ends, pole, turns, f"{sense}{feed}")
@@ -301,7 +317,7 @@ class Lines(gx.Speller):
     ) -> Iterator[str]:
         """Yield CC and CP, whose circle goes through the words of its end."""
         whole, start = self._whole(ends), self._stands()
-        words = _words({a: v for a, v in ends.items() if a not in "XY"}, "I" if self.steps else "")
+        words = worded({a: v for a, v in ends.items() if a not in "XY"}, "I" if self.steps else "")
         self._stand({axis: ends.get(axis, self._still(axis)) for axis in (*"XY", *ends)})
         end = start if whole else self._stands()
         centre, left = (pole["X"], pole["Y"]), self.motion == "G3"
@@ -310,8 +326,8 @@ class Lines(gx.Speller):
         angle = turned(start, end, centre, left, turns)
         there = reached(start, centre, angle)
         self.rounded |= {a: v - float(self.place[a]) for a, v in zip("XY", there, strict=True)}
-        yield f"CC{_words(dict(zip('XY', centre, strict=True)))}"
-        yield f"CP IPA{_signed(angle)}{words}{how}"
+        yield f"CC{worded(dict(zip('XY', centre, strict=True)))}"
+        yield f"CP IPA{signed(angle)}{words}{how}"
 
     def _stays(self, axis: str, value: Decimal) -> bool:
         """Whether the word of an axis leads to where it stands."""
@@ -341,8 +357,8 @@ class Lines(gx.Speller):
         self.place |= there
         for axis in axes:
             self.rounded.pop(axis, None)
-        yield f"CC{_words(pole)}"
-        yield f"C{_words(there)}{rest}"
+        yield f"CC{worded(pole)}"
+        yield f"C{worded(there)}{rest}"
 
     def _whole(self, ends: dict[str, Decimal]) -> bool:
         """Whether an arc ends where it starts: C would then be next to nothing behind a helix."""
@@ -355,7 +371,7 @@ class Lines(gx.Speller):
         angle = Decimal(values.pop("R", "0"))
         if angle or self.turns:
             yield "CYCL DEF 10.0 ROTATION"
-            yield f"CYCL DEF 10.1 ROT{_signed(angle)}"
+            yield f"CYCL DEF 10.1 ROT{signed(angle)}"
         self.turns = angle
         self._forget("XY")
 
@@ -368,7 +384,7 @@ class Lines(gx.Speller):
         self.shift = ends
         yield "CYCL DEF 7.0 DATUM SHIFT"
         for number, (axis, value) in enumerate(ends.items(), 1):
-            yield f"CYCL DEF 7.{number} {axis}{_signed(value)}"
+            yield f"CYCL DEF 7.{number} {axis}{signed(value)}"
 
     def _forget(self, axes: Iterable[str]) -> None:
         for axis in axes:
@@ -381,20 +397,4 @@ UNTURNED = gx.put_before("offsets")
 IN_MM = "leave `metric` out: a TNC takes programs in inches"
 ONE_UNIT = gx.put_before("metric")
 NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
-ACTS = frozenset(("G4", "G43", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))
-
-
-def _code(letter: str, text: str) -> str:
-    return f"{letter}{_plain(text)}"
-
-
-def _plain(text: str) -> str:
-    return exact(Decimal(text))
-
-
-def _signed(value: Decimal) -> str:
-    return f"{'+' if value >= 0 else '-'}{exact(abs(value))}"
-
-
-def _words(ends: dict[str, Decimal], step: str = "") -> str:
-    return "".join(f" {step}{axis}{_signed(value)}" for axis, value in ends.items())
+ACTS = frozenset(("G4", "G43", "G43.1", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))
