@@ -50,6 +50,20 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: PLANE that turns an axis moves nothing",
+        "plugins/gcxform_plugins/dialects/heidenhain/planes.py",
+        "open_ = not axes or any(at is None or Decimal(at) for at in stand)",
+        "open_ = False",
+        f"{CASE}plane-turns]",
+    ),
+    Mutation(
+        "klartext: PLANE of no tilt says nothing of an axis that is turned",
+        "plugins/gcxform_plugins/dialects/heidenhain/planes.py",
+        "open_ = bool(spatial) and any(at is not None and Decimal(at) for at in stand)",
+        "open_ = False",
+        f"{CASE}plane-of-turned-axes]",
+    ),
+    Mutation(
         "klartext: the oversize of a tool is gone where it is called again",
         LINES,
         "            behind = self.deltas\n",
@@ -880,7 +894,7 @@ MUTATIONS = (
     Mutation(
         "klartext: the length of another tool is said by TOOL CALL",
         LINES,
-        'if "G43" in codes and _plain(values.pop("H", self.in_spindle)) != self.in_spindle:',
+        'if "G43" in codes and bare(values.pop("H", self.in_spindle)) != self.in_spindle:',
         "if False:",
         f"{WRITTEN}::test_what_klartext_has_no_words_for_is_refused",
     ),

@@ -32,7 +32,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | the first move in RL or RR, and R0 | end and begin square to the contour | 620 ISO, p. 146 |
 | APPR, DEP | as `approach.py` says | TNC7 |
 | FK | where its data have one solution, as `free.py` says; else refused | TNC 407, p. 5-66 |
-| LN, PLANE | refused | |
+| LN, PLANE that tilts | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
@@ -66,6 +66,8 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycle 32 | T is how far the path may be off, as G64 P; its other lines: nothing | 620, p. 276 |
 | cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |
 | PLANE RESET STAY | cancels what is refused here | [K] |
+| PLANE SPATIAL with angles of 0, STAY | the same where no axis is turned | [K] |
+| these with TURN or MOVE | nothing where rotary axes are at 0; else, and MB: refused | 620 |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |

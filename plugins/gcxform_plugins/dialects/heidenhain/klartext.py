@@ -9,12 +9,13 @@ from math import isnan
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.cycles import AUTO, Cycles
+from gcxform_plugins.dialects.heidenhain.cycles import AUTO
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
 from gcxform_plugins.dialects.heidenhain.fetching import told_of
 from gcxform_plugins.dialects.heidenhain.lines import BEGIN_PGM
 from gcxform_plugins.dialects.heidenhain.moves import retracts
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED
+from gcxform_plugins.dialects.heidenhain.planes import Planes
 from gcxform_plugins.dialects.heidenhain.words import MM, exact, goes_on, plain, written
 
 BEGIN = re.compile(r"BEGIN\s+PGM\b.*?\b(MM|INCH)\s*")
@@ -45,7 +46,7 @@ LBL_0 = "write LBL 0 where it ends, behind what it does"
 LONGEST_TOOL = 9  # digits
 
 
-class Klartext(Cycles):
+class Klartext(Planes):
     """Turns the statements of a TNC into blocks of words."""
 
     def __init__(self, *program: Any) -> None:
@@ -81,6 +82,7 @@ class Klartext(Cycles):
             "SEL": self.select,
             "TRANS": self.transformed,
             "PATTERN": self.pattern,
+            "PLANE": self.plane_of,
             **dict.fromkeys(("FN", "Q", "QL", "QR", "QS"), self.computed),
             **dict.fromkeys(("FL", "FLT", "FC", "FCT", "FPOL"), self.free),
             "FUNCTION": self._function_of,
@@ -128,9 +130,6 @@ class Klartext(Cycles):
         read = self.texts.get(word[0])
         if read is not None:
             return read(item)
-        if name.split() == ["PLANE", "RESET", "STAY"]:
-            self.ends("PLANE RESET", item)
-            return self.along()
         self.refuse(f"{name.strip()[:40]} is not resolved", item)
 
     def _begin(self, item: gx.Item) -> list[str]:

@@ -1,0 +1,52 @@
+"""PLANE where it tilts nothing: RESET, and SPATIAL with three angles of 0."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+
+import gcxform as gx
+from gcxform_plugins.dialects.heidenhain.cycles import Cycles
+from gcxform_plugins.dialects.heidenhain.datums import VALUE
+
+NULL = r"[+-]?(?:0+(?:[.,]0*)?|[.,]0+)"
+UNTILTED = re.compile(
+    rf"PLANE\s+(?:RESET|(SPATIAL\s+SPA\s*{NULL}\s+SPB\s*{NULL}\s+SPC\s*{NULL}))"
+    rf"\s+(STAY|TURN|MOVE)((?:\s+(?:F\s*MAX|F\s*{VALUE}|(?:SEQ|SYM)\s*[+-]|(?:TABLE|COORD)\s+ROT"
+    rf"|(?:DIST|ABST)\s*{VALUE}))*)\s*"
+)
+FEED = re.compile(rf"\sF\s*{VALUE}")
+ALONE = "PLANE turns no rotary axis but {}"
+STARTS = "say where they stand: start = {{ {} }} in [input]"
+
+
+class Planes(Cycles):
+    """Reads PLANE where it leaves words as they are."""
+
+    def plane_of(self, item: gx.Item) -> list[str]:
+        """PLANE: what tilts nothing goes along. Raises InputError for what may, or that moves.
+
+        TURN and MOVE lead the rotary axes to 0, which is nothing where they stand there.
+        """
+        found = UNTILTED.fullmatch(item.name)
+        if found is None:
+            self.refuse(f"{item.name.strip()[:40]} is not resolved", item)
+        spatial, how, options = found.groups()
+        self.ends(f"PLANE {'SPATIAL' if spatial else 'RESET'}", item)
+        axes = sorted({*self.reading.rotary, *self.turned()})
+        stand = [self.place.get(axis) for axis in axes]
+        if how == "STAY":
+            open_ = bool(spatial) and any(at is not None and Decimal(at) for at in stand)
+            open_ |= bool(spatial) and self.following
+        else:
+            open_ = not axes or any(at is None or Decimal(at) for at in stand)
+            self.assumed[ALONE.format(" and ".join(axes))] = None
+        if open_ or (self.following and how != "STAY"):
+            known = axes and None not in stand
+            places = ", ".join(f"{axis} = 0" for axis in axes or "AC")
+            why = "an axis is turned" if known else "whether an axis is turned is not known"
+            hint = () if known or how == "STAY" else (STARTS.format(places),)
+            self.refuse(f"{item.name.strip()[:40]}: {why}", item, *hint)
+        if FEED.search(options):
+            self.feed_lost = True
+        return self.along()
