@@ -50,6 +50,20 @@ ONCE = "tests/test_languages_compensated.py::test_what_is_compensated_is_not_com
 
 MUTATIONS = (
     Mutation(
+        "klartext: Q108 leaves DR out",
+        PROGRAM,
+        """ + float(self.deltas.get("DR", 0))\n\n    def _tool_def""",
+        """\n\n    def _tool_def""",
+        f"{CASE}parameter-of-the-radius]",
+    ),
+    Mutation(
+        "klartext: Q108 stays that of the tool before",
+        PROGRAM,
+        "self.q[RADIUS] = self._radius_known(tool)",
+        "self.q[RADIUS] = self._radius_known(tool) or self.q.get(RADIUS)",
+        f"{CASE}parameter-of-no-radius]",
+    ),
+    Mutation(
         "klartext: PLANE that turns an axis moves nothing",
         "plugins/gcxform_plugins/dialects/heidenhain/planes.py",
         "open_ = not axes or any(at is None or Decimal(at) for at in stand)",

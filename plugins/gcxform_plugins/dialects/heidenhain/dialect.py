@@ -80,6 +80,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | other patterns, CYCL CALL POS, PAT with F | refused | |
 | other cycles | refused | |
 | Q, QL, QR | known once the program has set them; Q100 to Q199 are the control's | 620, p. 285 |
+| Q108 | the radius of the tool in the machine file, with DR | 530 49x-03, p. 612 |
 | formulas | brackets, signs, functions, `^` to the right, products, sums | TNC7 |
 | a function | takes the operand behind it: `SQ 10 - 3^3` is 73 | iTNC 530, p. 602 |
 | `-3^2`, SGN 0, `%` below zero | refused | |

@@ -44,6 +44,8 @@ COMMENT = re.compile(r"[\s\d]*;")
 UNNUMBERED = re.compile(r"\s*[^\s\d;]")
 LBL_0 = "write LBL 0 where it ends, behind what it does"
 LONGEST_TOOL = 9  # digits
+RADIUS = "Q108"
+RADIUS_TOLD = "Q108 is the radius of the tool in the machine file, and DR of TOOL CALL"
 
 
 class Klartext(Planes):
@@ -299,10 +301,22 @@ class Klartext(Planes):
             self.lose()
         if self.reading.stays:
             return [f"T{tool} M6"]
+        self.assigned(RADIUS)
+        if RADIUS[1:] not in self.reading.parameters:
+            self.q[RADIUS] = self._radius_known(tool)
         beside = self.tool_names.beside(self.tool_name)
         if self.reading.asides and self.deltas:
             beside += f" {told_of(self.deltas, self.inch)}"
         return [f"T{tool} M6{beside}", self._length(item, tool)]
+
+    def _radius_known(self, tool: str) -> float | None:
+        """Return the radius of a tool with its DR, as Q108 has it; None where it is not known."""
+        known = self.reading.tools.get(int(tool))
+        if known is None or isnan(known.radius):
+            return None
+        if any(RADIUS in line.upper() for line in self.lines):
+            self.assumed[RADIUS_TOLD] = None
+        return known.radius / (MM if self.inch else 1.0) + float(self.deltas.get("DR", 0))
 
     def _tool_def(self, item: gx.Item) -> list[str]:
         """TOOL DEF: prepares a tool; what it says of it must be what the machine file says.
