@@ -1301,6 +1301,13 @@ MUTATIONS = (
         f"{LINES_BESIDE}::test_a_case_is_a_whole_number",
     ),
     Mutation(
+        "siemens: the name of a tool is looked for where its line has it that computes",
+        BLOCKS,
+        "(self.straight or self.lines[self.line])",
+        "self.lines[self.line]",
+        f"{CASES}[dialects/siemens/tool-by-name-beside-a-value]",
+    ),
+    Mutation(
         "siemens: a dwell of ten seconds is a mode",
         CYCLES,
         'if k == AMODE else ("", "0") for k',

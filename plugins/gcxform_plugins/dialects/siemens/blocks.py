@@ -33,11 +33,12 @@ class Blocks(Contours):
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
+    straight   the plain words that stand for a line which computes, while they are read
     corners    G450 or G451, as it was said;  around: KONT is in force
     """
 
     feed_open = around = False
-    spindle = speed = corners = ""
+    spindle = speed = corners = straight = ""
 
     grammar = ("gcxform_grammars", "siemens")
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
@@ -241,11 +242,15 @@ class Blocks(Contours):
             self.refuse(
                 f"{item.names[0]} by a name, or a second tool", item, "write T and a number"
             )
-        name = self.lines[self.line][slice(*item.place)].split('"')[1]
+        name = self.text_of(item).split('"')[1]
         try:
             line.tool, line.tool_name = self.tool_names.number(name), name
         except gx.UnspeakableError as why:
             self.refuse(str(why), item, why.hint)
+
+    def text_of(self, item: gx.Item) -> str:
+        """Return an item as it is written."""
+        return (self.straight or self.lines[self.line])[slice(*item.place)]
 
     def _by_name(self, line: Line) -> str:
         return self.tool_names.beside(line.tool_name) if line.tool_name else ""

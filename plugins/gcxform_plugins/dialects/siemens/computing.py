@@ -99,7 +99,11 @@ class Computing(Deciding):
             raise self.refusal("GX223", why.message) from None
         if not straight.strip():
             return []
-        return self.learnt_text(straight, self._plainly)
+        self.straight = straight
+        try:
+            return self.learnt_text(straight, self._plainly)
+        finally:
+            self.straight = ""
 
     def _tells(self, items: Sequence[gx.Item]) -> bool:
         """Whether a line only shows a text that is computed, and does not stay as it stands."""
