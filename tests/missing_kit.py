@@ -16,6 +16,7 @@ ANSWERS: dict[str, Any] = {
     "cycle-without-place": "drills",
     "user-codes": "keep",
     "tool-length-axis": "Z",
+    "basic-frames": "none",
     "orientation-path": "angles",
     "edge-after-tool-change": 1,
     "units": "mm",

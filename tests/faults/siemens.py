@@ -5,6 +5,8 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 PLACE = "plugins/gcxform_plugins/dialects/siemens/place.py"
+CYCLE_CALLS = "plugins/gcxform_plugins/dialects/siemens/cycle_calls.py"
+CALLS = "plugins/gcxform_plugins/dialects/siemens/calls.py"
 MOVES = "plugins/gcxform_plugins/dialects/siemens/moves.py"
 ARCS = "plugins/gcxform_plugins/dialects/siemens/arcs.py"
 BLOCKS = "plugins/gcxform_plugins/dialects/siemens/blocks.py"
@@ -158,9 +160,9 @@ MUTATIONS = (
     ),
     Mutation(
         "siemens: CYCLE832 is left out for the same control",
-        READING,
-        'if name == "CYCLE832":',
-        "if False:",
+        CYCLE_CALLS,
+        'if name in TELLING or name == "CYCLE832":',
+        "if name in TELLING:",
         f"{CASES}[dialects/siemens/compensated-with-cycle832]",
     ),
     Mutation(
@@ -615,7 +617,7 @@ MUTATIONS = (
     Mutation(
         "siemens written: behind SUPA there is no length",
         LINES,
-        "self.waits = bool(self.length)\n",
+        "self.waits = self.waits or (along and bool(self.length))\n",
         "self.waits = False\n",
         "tests/test_siemens_written.py::"
         "test_a_length_ends_for_a_move_in_the_machine_and_is_in_force_again",
@@ -826,7 +828,7 @@ MUTATIONS = (
     Mutation(
         "siemens: SUPA with a tool length",
         BLOCKS,
-        'if self.edge != "0" or self.following:',
+        'if not (self.edge == "0" or aside) or self.following:',
         "if self.following:",
         f"{CASES}[dialects/siemens/machine-with-a-length]",
     ),
@@ -1302,16 +1304,72 @@ MUTATIONS = (
     ),
     Mutation(
         "siemens: the name of a tool is looked for where its line has it that computes",
-        BLOCKS,
+        READING,
         "(self.straight or self.lines[self.line])",
         "self.lines[self.line]",
         f"{CASES}[dialects/siemens/tool-by-name-beside-a-value]",
     ),
     Mutation(
+        "siemens: the older CYCLE832 switches TRAORI on, and is left out",
+        CYCLES,
+        'else "1" if following else "0")',
+        'else "01")',
+        f"{CASES}[dialects/siemens/path-mode-by-digits]",
+    ),
+    Mutation(
+        "siemens: D1 of nobody's tool is no length",
+        MOVES,
+        "if self.edge == NOBODYS and",
+        "if False and",
+        f"{CASES}[dialects/siemens/edge-of-no-tool]",
+    ),
+    Mutation(
+        "siemens: D beside T does not gainsay the machine file",
+        BLOCKS,
+        'self.promised in ("", str(int(setting)))',
+        'self.promised in ("", "1", str(int(setting)))',
+        f"{CASES}[dialects/siemens/edge-before-another]",
+    ),
+    Mutation(
+        "siemens: a length beside SUPA is said by nobody",
+        BLOCKS,
+        "            yield self.owed\n",
+        "            yield from ()\n",
+        f"{CASES}[dialects/siemens/edge-beside-supa]",
+    ),
+    Mutation(
+        "siemens: D1 once more behind SUPA, and the length is owed no longer",
+        BLOCKS,
+        "        for block in self._with_edge(line.edge_number):\n",
+        '        self.owed = ""\n        for block in self._with_edge(line.edge_number):\n',
+        f"{CASES}[dialects/siemens/edge-beside-supa]",
+    ),
+    Mutation(
+        "siemens: behind G500 a move counts from the zero before",
+        MOVES,
+        "        if self.work == NO_OFFSET:\n",
+        "        if False:\n",
+        f"{CASES}[dialects/siemens/no-offset]",
+    ),
+    Mutation(
+        "siemens: SAVE leaves the frame of the subprogram in force",
+        CALLS,
+        "self.motion, self.steps, self.frame = modes",
+        "self.motion, self.steps, _ = modes",
+        f"{CASES}[dialects/siemens/call-that-saves]",
+    ),
+    Mutation(
+        "siemens: SAVE leaves another plane in force",
+        CALLS,
+        "        if saved(self)[1] != others:\n",
+        "        if False:\n",
+        f"{CASES}[dialects/siemens/call-that-saves-a-plane]",
+    ),
+    Mutation(
         "siemens: a dwell of ten seconds is a mode",
         CYCLES,
-        'if k == AMODE else ("", "0") for k',
-        'if k >= 0 else ("", "0") for k',
+        "if not (k == AMODE and x == SECONDS)",
+        "if not (k >= 0 and x == SECONDS)",
         f"{LINES_BESIDE}::test_seconds_are_said_in_one_place",
     ),
     Mutation(

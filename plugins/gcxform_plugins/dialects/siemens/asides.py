@@ -17,8 +17,12 @@ BLENDS = frozenset(("64", "641", "642", "643", "644", "645"))
 QUIET = frozenset((
     "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
     "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
-    "ORISON", "ORISOF", "RTLION", "RTLIOF",
+    "ORISON", "ORISOF", "RTLION", "RTLIOF", "CFC",
 ))
 # fmt: on
 """Commands that move nothing and change no word behind them."""
+TELLING = frozenset(("WORKPIECE", "GROUP_BEGIN", "GROUP_END", "GROUP_ADDEND"))
+"""Calls for the screen: the blank of the simulation, and which lines belong together."""
+GEARS = frozenset(range(40, 46))
+"""M40 to M45: the gear of the spindle (PM 105)."""
 TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))

@@ -18,8 +18,8 @@ from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
-from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, STEP, Line
-from gcxform_plugins.dialects.siemens.moves import rest_of
+from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, NOBODYS, STEP, Line
+from gcxform_plugins.dialects.siemens.moves import OF_WHICH, rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 from gcxform_plugins.dialects.siemens.tapping import CODE, LINES, SPOS, Tap, tap_at, turned
 
@@ -33,12 +33,12 @@ class Blocks(Contours):
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
-    straight   the plain words that stand for a line which computes, while they are read
+    owed       the block of an edge that was said beside SUPA, where no word counts by it
     corners    G450 or G451, as it was said;  around: KONT is in force
     """
 
     feed_open = around = False
-    spindle = speed = corners = straight = ""
+    spindle = speed = corners = owed = ""
 
     grammar = ("gcxform_grammars", "siemens")
     number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
@@ -85,7 +85,7 @@ class Blocks(Contours):
         if tap.sense != self.spindle or not self.speed or Decimal(tap.speed) != Decimal(self.speed):
             message = f"a tap, with {tap.sense} S{tap.speed} not in force before it"
             self.refuse(message, item, "write it in a line before")
-        beside = self.following or self.comp or self.drilling or self.steps
+        beside = self.following or self.comp or self.drilling or self.steps or self.edge == NOBODYS
         if beside or self.plane != "XY" or self.frame != Frame() or self.feed_mode in ("93", "95"):
             self.refuse("a tap in steps, in a frame, or beside what changes its way", item)
         self.check_plane(item)
@@ -99,7 +99,7 @@ class Blocks(Contours):
     def comment(self, text: str) -> str:
         """Return the comment of a block for one of a line, or what the operator is told by it."""
         told = self.reading.asides and text[:1] in "Mm"
-        return gx.Speller.aside(text) if told else super().comment(text)
+        return gx.Speller.along(text) if told else super().comment(text)
 
     def _check_feed(self, line: Line) -> None:
         """Refuse a cut behind a cycle with feeds of its own, until F is programmed again."""
@@ -144,19 +144,26 @@ class Blocks(Contours):
         if line.dwell is not None or line.act is not None or line.cycle is not None:
             yield from self._alone(line)
             return
-        if line.tool or line.changes is not None or line.edge is not None:
-            yield from self._tooled(line)
-        if line.work is not None:
-            self._shift(line.work[0])
+        yield from self._before(line)
         if line.modal is not None and (line.axes or line.centres):
             self.refuse("MCALL beside a move", line.modal, "give it its own line")
-        if line.machine is not None:
+        if line.machine is not None and (line.axes or line.centres or line.named or line.middles):
             yield self._in_machine(line)
             return
         yield self.block_of(line)
         yield from line.behind
         if self.drilling is not None and (line.axes or line.centres):
             yield from self._holes(self.drilling)
+
+    def _before(self, line: Line) -> Iterator[str]:
+        """Yield the blocks of tools and lengths, and take another work offset."""
+        if line.tool or line.changes is not None or line.edge is not None:
+            yield from self._tooled(line)
+        if self.owed and line.machine is None and not line.says_only("tool", "tool_name", "others"):
+            yield self.owed
+            self.owed = ""
+        if line.work is not None:
+            self._shift(line.work[0])
 
     # --- lines of one thing ---
 
@@ -211,7 +218,10 @@ class Blocks(Contours):
         """Yield the moves of a cycle where the axes stand. Raises PlaceError."""
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
+        if self.edge == NOBODYS:
+            self.refuse(OF_WHICH, None, "write T and M6 before")
         self.check_plane(None)
+        self.check_offset(None)
         if self.feed_open and not hole.own_feed:
             self.refuse(
                 "which feed is in force behind a cycle with its own is not known", None, FEED
@@ -248,48 +258,61 @@ class Blocks(Contours):
         except gx.UnspeakableError as why:
             self.refuse(str(why), item, why.hint)
 
-    def text_of(self, item: gx.Item) -> str:
-        """Return an item as it is written."""
-        return (self.straight or self.lines[self.line])[slice(*item.place)]
-
     def _by_name(self, line: Line) -> str:
         return self.tool_names.beside(line.tool_name) if line.tool_name else ""
 
     def _tooled(self, line: Line) -> Iterator[str]:
         """Yield the blocks of T, M6 and D, in this order."""
         if line.tool:
-            self.waiting = line.tool
+            self.waiting, self.promised = line.tool, ""
             if line.changes is None and self.reading.control.get("tool-change-by") == "T":
                 line.changes = line.edge or self.any_of(line) or gx.Item("word", ("T",), (), (0, 0))
         if line.changes is not None:
-            if line.axes or self.following:
-                message = "M6 beside a move, or while TRAORI is in force"
-                self.refuse(message, line.changes, "give M6 its own line, with TRAFOOF before")
-            yield f"T{line.tool} M6{self._by_name(line)}" if line.tool else "M6"
-            self.tool, self.changed, self.edge, self.along = self.waiting, True, None, None
-            moves = self.dialect.m_codes[CHANGE].loses_position
-            if moves and CHANGE not in self.reading.inert_m:
-                self.place.lose(LINEAR + ROTARY)
-            setting = self.reading.control.get("edge-after-tool-change")
-            if line.edge is None and setting in (0, 1):
-                yield from self._with_edge(str(int(setting)), line.changes)
+            yield from self._changed(line, line.changes)
         elif line.tool:
             yield f"T{line.tool}{self._by_name(line)}"
         if line.edge is not None:
-            if line.edge_number not in ("0", "1"):
-                message = f"D{line.edge_number} is another cutting edge, of unknown length"
-                self.refuse(message, line.edge, "use D1, or give the edge its own tool number")
-            yield from self._with_edge(line.edge_number, line.edge)
+            yield from self._edged(line, line.edge)
 
-    def _with_edge(self, number: str, item: gx.Item | None) -> Iterator[str]:
+    def _changed(self, line: Line, item: gx.Item) -> Iterator[str]:
+        """Yield the block of M6, and of the edge that is then in force."""
+        if line.axes or self.following:
+            message = "M6 beside a move, or while TRAORI is in force"
+            self.refuse(message, item, "give M6 its own line, with TRAFOOF before")
+        yield f"T{line.tool} M6{self._by_name(line)}" if line.tool else "M6"
+        self.tool, self.changed, self.edge, self.along = self.waiting, True, None, None
+        self.owed = ""
+        moves = self.dialect.m_codes[CHANGE].loses_position
+        if moves and CHANGE not in self.reading.inert_m:
+            self.place.lose(LINEAR + ROTARY)
+        setting = self.reading.control.get("edge-after-tool-change")
+        agree = setting in (0, 1) and self.promised in ("", str(int(setting)))
+        if line.edge is None and setting is not None and agree:
+            yield from self._with_edge(str(int(setting)))
+        self.promised = ""
+
+    def _edged(self, line: Line, item: gx.Item) -> Iterator[str]:
+        """Yield the block of D: behind SUPA, where no word there counts by a length."""
+        if line.edge_number not in ("0", "1"):
+            message = f"D{line.edge_number} is another cutting edge, of unknown length"
+            self.refuse(message, item, "use D1, or give the edge its own tool number")
+        if line.changes is None and self.waiting not in (None, self.tool):
+            self.promised = line.edge_number
+        waits = line.machine is not None and "Z" not in line.axes and line.edge_number == "1"
+        for block in self._with_edge(line.edge_number):
+            self.owed = block if waits else ""
+            yield "" if waits else block
+
+    def _with_edge(self, number: str) -> Iterator[str]:
+        """Yield the block for an edge; none for that of a tool which nobody knows."""
+        known = number == "0" or self.tool not in (None, "0")
+        number = number if known else NOBODYS
         if number == self.edge:
             return
-        if number == "1" and self.tool in (None, "0"):
-            message = "D1 of the tool in the spindle, and which that is is not known"
-            self.refuse(message, item, "write T and M6 before")
         self.edge = number
         self.place.lose("Z" if self.length_is_along_z else LINEAR)
-        yield f"G43 H{self.tool}" if number == "1" else "G49"
+        if known:
+            yield f"G43 H{self.tool}" if number == "1" else "G49"
 
     # --- frames ---
 
@@ -304,7 +327,8 @@ class Blocks(Contours):
         """Return the block of SUPA: in the coordinates of the machine, without a tool length."""
         self.motion = motion = line.motion or self.motion
         hint = "say where the spindle shall stand: G0 SUPA, absolute words, D0; and TRAFOOF before"
-        if self.edge != "0" or self.following:
+        aside = self.edge in ("1", NOBODYS) and "Z" not in line.axes and self.length_is_along_z
+        if not (self.edge == "0" or aside) or self.following:
             message = "SUPA with a tool length or TRAORI in force, or where that is not known"
             self.refuse(message, line.machine, hint)
         arc = line.centres or line.named or line.middles

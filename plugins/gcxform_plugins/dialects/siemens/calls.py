@@ -2,8 +2,8 @@
 
 They stand in files beside the program, `NAME.SPF` or `NAME.MPF`, or in folders that the user names.
 CALL, PCALL and EXTCALL name one by a text or a path, of which the last part counts here.
-What they set of modes stays set behind them; one that says SAVE is not followed, nor one that is
-not there.
+What they set of modes stays set behind them, but for one that says SAVE (`saving.py`); one that is
+not there is not followed.
 """
 
 from __future__ import annotations
@@ -17,13 +17,14 @@ from lark.exceptions import UnexpectedInput
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.siemens.asides import QUIET
+from gcxform_plugins.dialects.siemens.asides import QUIET, TELLING
 from gcxform_plugins.dialects.siemens.cells import LOST, Cell, Value, converted, initial
 from gcxform_plugins.dialects.siemens.computing import Computing
 from gcxform_plugins.dialects.siemens.expressions import PARAMETER
 from gcxform_plugins.dialects.siemens.line import FRAMES
 from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, type_of
 from gcxform_plugins.dialects.siemens.reading import ORIENTATION, WHY
+from gcxform_plugins.dialects.siemens.saving import other_mode, saved
 from gcxform_plugins.dialects.siemens.structure import code
 from gcxform_plugins.dialects.siemens.variables import WORDS, Call
 
@@ -42,7 +43,9 @@ OUTSIDE = frozenset(("sequence", "label"))
 
 
 class Calls(Computing):
-    """Executes calls."""
+    """Executes calls; `saving`: the PROC that was read last says SAVE."""
+
+    saving = False
 
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line; none of one that calls. Raises InputError."""
@@ -96,7 +99,7 @@ class Calls(Computing):
 
     def knows(self, name: str) -> bool:
         """Whether a name is one of the language, or of a cycle of Siemens, and no subprogram's."""
-        said = {*QUIET, *ORIENTATION, *FRAMES, *WHY, "SUPA", "CIP", "TRAFOOF", "MCALL", "WORKPIECE"}
+        said = {*QUIET, *TELLING, *ORIENTATION, *FRAMES, *WHY, "SUPA", "CIP", "TRAFOOF", "MCALL"}
         return name.upper() in said or re.fullmatch(r"CYCLE[0-9]+", name.upper()) is not None
 
     # --- in and out ---
@@ -108,6 +111,9 @@ class Calls(Computing):
         if self.drilling is not None or self.comp:
             self.refuse(f"{name} is called under MCALL or compensation")
         self.look_for_tangents(self.lines[lines.start : lines.stop])
+        if any(call.saved for call in self.calls):
+            self.refuse(f"{name} is called in a subprogram that says SAVE")
+        self.saving = False
         proc = self._proc_of(name, lines)
         try:
             times, given = self._given(text)
@@ -115,7 +121,7 @@ class Calls(Computing):
         except v.NoValueError as why:
             raise self.refusal(why.code, why.message, None, why.hint) from None
         self.decides = True
-        self.calls.append(Call(lines, self.at, times))
+        self.calls.append(Call(lines, self.at, times, saved(self) if self.saving else None))
         self.levels.append(level)
         self.at = lines.start
 
@@ -133,8 +139,12 @@ class Calls(Computing):
         words = [str(c.children[0]).upper() for c in bare]
         if name.upper() not in tokens:
             self.refuse(f"the file of {name} has a PROC of another name")
-        if not {*words} <= {"DISPLOF", "SBLOF"}:
-            self.refuse(f"{name} says {words[0]} behind PROC")
+        saves = "SAVE" in words and not self.reading.stays
+        if other := {*words} - {"DISPLOF", "SBLOF", *(["SAVE"] if saves else [])}:
+            self.refuse(f"{name} says {min(other)} behind PROC")
+        if saves and (mode := other_mode(self.lines[lines.start : lines.stop])):
+            self.refuse(f"{name} says SAVE, and {mode} in it is not followed up to its end")
+        self.saving = saves
         return node
 
     def _given(self, text: str) -> tuple[int, list[Any]]:
@@ -232,6 +242,8 @@ class Calls(Computing):
     def _leave(self) -> None:
         """Go back, or begin a subprogram once more."""
         call = self.calls[-1]
+        if call.saved is not None:
+            self._put_back(*call.saved)
         call.times -= 1
         if call.times:
             self.at = call.lines.start
@@ -239,6 +251,16 @@ class Calls(Computing):
         self.calls.pop()
         self.levels.pop()
         self.at = call.back
+
+    def _put_back(self, modes: tuple[Any, ...], others: tuple[Any, ...]) -> None:
+        """Take what was in force before a subprogram that says SAVE. Raises InputError."""
+        if saved(self)[1] != others:
+            self.refuse("a subprogram that says SAVE ends in another plane, zero, unit or mode")
+        old = self.frame
+        self.motion, self.steps, self.frame = modes
+        if self.frame != old:
+            self.place.seen_anew(lambda point: self.frame.inside(old.point(point)))
+            self.lose_pole()
 
     def at_end(self) -> None:
         """Come to the end of a file. Raises InputError where that of a subprogram has no M17."""

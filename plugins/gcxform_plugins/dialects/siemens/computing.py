@@ -6,7 +6,7 @@ A line with a flow word says where to go on (`deciding.py`), and is no block.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import Any
 
 from lark import Tree
@@ -16,7 +16,8 @@ import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.compiling import MOST, Compiled, Compiler
 from gcxform_plugins.dialects.siemens.deciding import Deciding
-from gcxform_plugins.dialects.siemens.nodes import Node, rule_of, span_of
+from gcxform_plugins.dialects.siemens.expressions import number_text
+from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of
 from gcxform_plugins.dialects.siemens.structure import StructureError, code
 from gcxform_plugins.dialects.siemens.variables import AXES
 
@@ -24,6 +25,9 @@ COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
 SLASH = re.compile(r"\A[ \t]*/[0-9]?")
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
+CYCLES = re.compile(r"CYCLE8[0-9]+|HOLES[12]|WORKPIECE", re.IGNORECASE)
+HANDED_ON = re.compile(rf"(?:{CYCLES.pattern})[ \t]*\((?:[^\"A-Z]|\"[^\"]*\")*[A-Z]", re.IGNORECASE)
+"""Cycles that are handed on what is not a plain number, and their like."""
 BRACKETS = str.maketrans("()\x01", "[] ")
 UNTOLD = "messages of which only the control knows the text are left out"
 AS_THEY_STAND = frozenset(("word", "bare", "label", "sequence", "call", "text_call"))
@@ -134,6 +138,8 @@ class Computing(Deciding):
     def _computes(self, item: gx.Item) -> bool:
         if item.kind == "indexed":
             return item.name == "R"
+        if item.kind == "call":
+            return HANDED_ON.match(item.name) is not None
         return item.kind in COMPUTED or (item.kind == "named" and self._cell(item.name) is not None)
 
     def _ended(self, items: Sequence[gx.Item], blocks: list[str]) -> list[str]:
@@ -145,6 +151,20 @@ class Computing(Deciding):
             self.stopped = False
         self.stopped |= any(item.name == "STOPRE" for item in items if item.names)
         return blocks
+
+    def _handed_on(self, node: Node) -> Iterator[tuple[int, int, str]]:
+        """Yield the numbers of what a cycle is handed on; its words, as _FINISH, stay."""
+        if not CYCLES.fullmatch(str(node.children[0])):
+            return
+        arguments: Any = next(c for c in node.children if rule_of(c) == "arguments")
+        for slot in arguments.children:
+            (value,) = slot.children or (None,)
+            word = rule_of(value) == "variable" and not any(map(self._is_known, names_in(value)))
+            if isinstance(value, Tree) and not word:
+                yield *span_of(slot), number_text(self.worth.number(value))
+
+    def _is_known(self, name: str) -> bool:
+        return self._is_variable(name, None) or name.startswith("$") or name == "R"
 
     def _straight(self, tree: Node, text: str) -> str:
         """Return a line of plain words for one that computes; nothing where it decides."""
@@ -159,6 +179,8 @@ class Computing(Deciding):
                 self.flow[rule](node)
             if rule == "assignment":
                 edits += self._assignment(node, set_names)
+            elif rule == "call":
+                edits += self._handed_on(node)
             elif rule not in AS_THEY_STAND:
                 edits.append((*span_of(node), ""))
         text = text.partition(";")[0] if '"' not in text else code(text, True)

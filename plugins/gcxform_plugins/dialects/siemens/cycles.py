@@ -18,6 +18,7 @@ SECONDS = "10"
 """AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
 AMODE = 2
 """Its place behind the last argument of the hole itself."""
+DIGITS = re.compile(r"[0-9]{1,7}")
 QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
 NO_RETRACT, PLAIN_MODE = "0", re.compile(r"[0-9]*")
 
@@ -95,8 +96,8 @@ def _depth(absolute: str, below: str, level: Decimal, *names: str) -> str:
 
 def _nothing_more(rest: Sequence[str]) -> None:
     """Refuse arguments behind those that are read: GMODE, DMODE, AMODE. Raises CycleError."""
-    alike = [("", "0", SECONDS) if k == AMODE else ("", "0") for k in range(len(rest))]
-    if any(other not in said for other, said in zip(rest, alike, strict=True)):
+    others = [x for k, x in enumerate(rest) if not (k == AMODE and x == SECONDS)]
+    if any(x and not (NUMBER.fullmatch(x) and Decimal(x) == 0) for x in others):
         raise CycleError("an argument behind the depth is not read")
 
 
@@ -245,12 +246,21 @@ def _seconds(text: str) -> str:
     return text if value else ""
 
 
-def keeps_path(given: Sequence[str]) -> bool:
-    """Whether CYCLE832 changes nothing but tolerances: by name, and not by its older digits."""
+def keeps_path(given: Sequence[str], following: bool) -> bool:
+    """Whether CYCLE832 changes nothing but tolerances; `following`: TRAORI is in force.
+
+    It is told by name, or by digits. Of these the tens say whether a tolerance of the tool axis
+    comes behind (PM 1108); in calls of two values, of older cycles, whether TRAORI is switched on,
+    or off [K].
+    """
     if given == [""]:
         return True
-    named = len(given) in (2, 3, 4) and QUALITY.fullmatch(given[1].upper()) is not None
-    return named and all(NUMBER.fullmatch(x) for x in (given[0], *given[2:]))
+    if len(given) not in (2, 3, 4) or not all(NUMBER.fullmatch(x) for x in (given[0], *given[2:])):
+        return False
+    if DIGITS.fullmatch(given[1]):
+        tens = given[1].zfill(2)[-2]
+        return tens in ("01" if len(given) > 2 else "1" if following else "0")
+    return QUALITY.fullmatch(given[1].upper()) is not None
 
 
 def swivels_nowhere(given: Sequence[str]) -> bool:

@@ -35,8 +35,9 @@ kept as it stands, with all that is lost behind it.
 | start and end radius | may differ by 0.01 mm (MD21000) | [K] |
 | `G4 F` | seconds, in a block of its own; `G4 S`: refused | [K] |
 | G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |
-| G500, G53 | leave basic frames in force, which only the control knows: refused | K2 741 |
-| SUPA, G153 | in machine coordinates; only with D0: a tool length may stay | ISO 3-42 |
+| G500 | leaves basic frames in force, which only the control knows: moves are refused | K2 741 |
+| G53 | so does this: refused, but for `[control] basic-frames = "none"`, where it is SUPA | K2 |
+| SUPA, G153 | in machine coordinates; Z only with D0: a tool length may stay | ISO 3-42 |
 | SUPA in a frame that turns | where X, Y and Z are in it is not known then | |
 | other words beside TRANS, G111, G4, a cycle | refused | |
 | TRANS, ROT, SCALE, MIRROR | a new programmable frame, in place of the one before | 808D 56 |
@@ -51,6 +52,8 @@ kept as it stands, with all that is lost behind it.
 | another feed mode | F has to be programmed again | |
 | `T5`, M6, `D1` | the tool is chosen, changed, its length in force: `T5 M6`, `G43 H5` | W1 13 |
 | `D0` | no length: `G49`; D2 and more: refused | W1 13 |
+| D1 of a tool that nobody knows | Z is refused, until D is said of another one | W1 13 |
+| D between T and M6 | behind M6 as the machine file says, or refused | W1 13 |
 | D1 in G18, G19 | along Y, X: refused without `[control] tool-length-axis = "Z"` (SD42940) | [K] |
 | Z between M6 and D | refused, but for `[control] edge-after-tool-change` = 0 or 1 | W1 13 |
 | those of X and Y | read, in G17: length 1 is along Z; steps behind D as well | W1 13 |
@@ -70,9 +73,12 @@ kept as it stands, with all that is lost behind it.
 | G64, G641 to G645 | corners are rounded: G64, however far | [K] |
 | G601 to G603, ADIS | how far: left out | [K] |
 | SOFT, BRISK, FFWON, COMPCAD ... | how fast, and how smooth: left out | [K] |
-| CYCLE832 | left out, with names as `_FINISH`: digits may switch TRAORI | [K] |
+| CYCLE832 | left out, with names as `_FINISH`, and with digits | PM 1108 |
+| that with two values, and a ten | older cycles switch TRAORI: refused | [K] |
+| GROUP_BEGIN, GROUP_END, WORKPIECE | left out: they are for the screen | |
+| M40 to M45 | left out: the gear of the spindle | PM 105 |
 | all four, where moves are written anew for the same control | they go along | |
-| CYCLE800 | only empty, or without angles, with two rotary axes at 0 | SW 481 |
+| CYCLE800 | only alone, empty, or without angles, with two rotary axes at 0 | SW 481 |
 | CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | CYCLE89, CYCLE85 | out at the feed, at RFF; behind CYCLE85 F must be programmed again | C81 |
@@ -82,6 +88,7 @@ kept as it stands, with all that is lost behind it.
 | HOLES1 under MCALL | from the first on, where the tool is nearer to that; else refused | [K] |
 | HOLES2 under MCALL | holes on a circle, in the order of their numbers, by lines | OM 286 |
 | DP, DPR | absolute, or below RFP; both: refused; other cycles: refused | C81 |
+| CYCLE81(R1, ...), and their like | by what their arguments are worth | |
 | R parameters | not known until they are set; a block sets several, left to right | [K] |
 | DEF of INT REAL BOOL CHAR STRING, arrays | 0 or empty, from 0, last index first | JP 54 |
 | `SET(1, , 3)`, `REP(2)`, `REP(2, 3)` | a gap stays; to the end, or three elements | [K] |
@@ -112,7 +119,8 @@ kept as it stands, with all that is lost behind it.
 | `%_N_NAME_MPF` | begins a program; calls find the others of the file; two MPF: refused | PM 43 |
 | what is left out of a call | its default in PROC, or 0 | PM |
 | CALL "NAME", CALL of a variable, PCALL, EXTCALL | by the last part of the name | JP |
-| SAVE, MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
+| SAVE | motion, G90 and the frame as before; refused where other modes differ | K2 2-108 |
+| MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
 | subprograms that are not there, synchronous actions, DEFINE | refused | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
@@ -191,6 +199,7 @@ class Siemens(gx.Dialect):
         lookup=gx.LookupRule(names=("{name}",), endings=(".SPF", ".MPF"), any_case=True)
     )
     settings = (
+        gx.Setting("basic-frames", "siemens: what G53 and G500 leave in force", ("none",)),
         gx.Setting("motion-at-start", "siemens: motion before any code (MD20150)", ("G0", "G1")),
         gx.Setting("tool-change-by", "siemens: what changes a tool (MD22550)", ("T", "M6")),
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),

@@ -13,10 +13,11 @@ from typing import Any
 from lark import Token, Tree
 from lark.exceptions import UnexpectedInput
 
+from gcxform_plugins.dialects.siemens.asides import TELLING
 from gcxform_plugins.dialects.siemens.nodes import Node, rule_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 
-QUIET_CALLS = frozenset(("SETAL", "SETMS", "MSG", "WORKPIECE", "FGROUP"))
+QUIET_CALLS = frozenset(("SETAL", "SETMS", "MSG", "FGROUP", *TELLING))
 """Calls that tell, or say of which spindle and axes S and F are (PM 105, 457)."""
 QUIET_NAMES = frozenset(("STOPRE", "SETMS", "MSG", "DISPLOF", "SBLOF", "SBLON"))
 SPEEDS = frozenset(("ACC", "FA", "FL", "FGREF", "VELOLIM", "JERKLIM"))

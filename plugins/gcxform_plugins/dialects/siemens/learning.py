@@ -24,12 +24,22 @@ KINDS = frozenset(("word", "value", "named"))
 MODES = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres", "comp"),
     *("corners", "around"),
-    *("changed", "tool", "waiting", "edge", "fed", "feed_mode", "feed_open", "orientation"),
+    *(
+        "changed",
+        "tool",
+        "waiting",
+        "edge",
+        "promised",
+        "fed",
+        "feed_mode",
+        "feed_open",
+        "orientation",
+    ),
     *("following", "stopped", "decides", "perhaps"),
 )
 WITHOUT = (
     *("stay", "drilling", "once", "unknown_cycle", "unsaid", "loses", "holes"),
-    *("begins", "rounding", "has_tangents", "kept_until"),
+    *("begins", "rounding", "has_tangents", "kept_until", "owed"),
 )
 """What is not, where anything is learnt."""
 OTHERS = ("line", "frame", "levels", "given", "calls", "place", "heads")

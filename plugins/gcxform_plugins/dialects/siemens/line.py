@@ -7,6 +7,8 @@ from dataclasses import dataclass, field, fields
 import gcxform as gx
 
 ABSOLUTE, STEP = "AC", "IC"
+NOBODYS = "of no known tool"
+"""The edge that is in force where D1 has been said of a tool that nobody knows."""
 FRAMES = frozenset(
     way + name for way in ("", "A") for name in ("TRANS", "ROT", "ROTS", "SCALE", "MIRROR")
 )

@@ -227,8 +227,9 @@ class Lines(gx.Speller):
     def _in_machine(
         self, number: str, names: list[str], words: list[tuple[str, str]]
     ) -> Iterator[str]:
-        """Yield SUPA, which asks for D0; the length that was in force waits."""
+        """Yield SUPA, which asks for D0 where Z moves; the length that was in force waits."""
         rest = [each for each in words if each[0] != "N" and each != ("G", "53")]
         said = " ".join(self._words(rest, dict(rest)))
-        yield f"{number}SUPA {said} D0"
-        self.waits = bool(self.length)
+        along = "Z" in dict(rest) or self.plane != "G17" or self.length in ("", NO_LENGTH)
+        yield f"{number}SUPA {said} D0" if along else f"{number}SUPA {said}"
+        self.waits = self.waits or (along and bool(self.length))

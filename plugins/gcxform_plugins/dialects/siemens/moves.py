@@ -7,13 +7,15 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import arcs as arcs
-from gcxform_plugins.dialects.siemens.line import ABSOLUTE, STEP, Line
+from gcxform_plugins.dialects.siemens.cycle_calls import CycleCalls
+from gcxform_plugins.dialects.siemens.line import ABSOLUTE, NOBODYS, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
-from gcxform_plugins.dialects.siemens.reading import Statements
+from gcxform_plugins.dialects.siemens.reading import NO_OFFSET, REASONS
 
 EDGE = (
     "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
 )
+OF_WHICH = "D1 of the tool in the spindle, and which that is is not known"
 ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
 START = (
     "write G1 in this block, or G0 if the way is clear; or say "
@@ -29,7 +31,7 @@ LINEAR_WAY = (
 )
 
 
-class Moves(Statements):
+class Moves(CycleCalls):
     """Makes the block of a move."""
 
     def motion_code(self, line: Line, motion: str) -> list[str]:
@@ -101,12 +103,20 @@ class Moves(Statements):
             message = "D1 in G18 or G19: its length is across the plane, and not along Z"
             self.refuse(message, item, ALONG)
 
+    def check_offset(self, item: gx.Item | None) -> None:
+        """Refuse moves that count from a zero which only the control knows."""
+        if self.work == NO_OFFSET:
+            self.refuse(REASONS["500"], item, "write a work offset, or SUPA")
+
     def _check_tool(self, line: Line) -> None:
         """Refuse moves of a tool of which the control alone knows the length."""
         self.check_plane(self.any_of(line))
+        self.check_offset(self.any_of(line))
         item = next((line.axes[a][2] for a in LINEAR if a in line.axes), None)
         if item is None:
             return
+        if self.edge == NOBODYS and self._counts_length(line):
+            self.refuse(OF_WHICH, item, "write T and M6 before")
         if self.changed and self.edge is None and self._counts_length(line):
             message = "behind M6 a setting of the control decides which edge is in force (MD20270)"
             self.refuse(message, item, EDGE)

@@ -17,7 +17,7 @@ from lark.exceptions import UnexpectedInput
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.shared.untouched_lines import KEPT
-from gcxform_plugins.dialects.siemens.asides import QUIET
+from gcxform_plugins.dialects.siemens.asides import GEARS, QUIET
 from gcxform_plugins.dialects.siemens.axes_of_lines import (
     ALL,
     DRILLING,
@@ -66,7 +66,7 @@ KEEPS = (
 )
 MODAL_CALL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
 UNREAD = gx.Item("flow", ("",), (), (0, 0))
-KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17}
+KNOWN = QUIET, frozenset(n for n in v.ISO_M if n not in (128, 129)) | {17} | GEARS
 """Commands and M codes that move nothing."""
 FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
@@ -335,7 +335,8 @@ class Programs(Scaling):
 
     def _other(self, line: Line, item: gx.Item, letter: str, number: str) -> None:
         codes = self.dialect.m_codes
-        known = not number.isdigit() or int(number) in codes or int(number) in self.reading.inert_m
+        quiet = {*codes, *GEARS, *self.reading.inert_m}
+        known = not number.isdigit() or int(number) in quiet
         if self.reading.stays and letter == "M" and not known:
             self.refuse(f"M{number} is one of the machine's own", item)
         super()._other(line, item, letter, number)

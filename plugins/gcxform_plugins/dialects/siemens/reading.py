@@ -8,7 +8,13 @@ from typing import Any
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import cycles as cycles
-from gcxform_plugins.dialects.siemens.asides import BLENDS, INERT, QUIET, TOLERANCES
+from gcxform_plugins.dialects.siemens.asides import (
+    BLENDS,
+    GEARS,
+    INERT,
+    QUIET,
+    TOLERANCES,
+)
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, CORNERS, FRAMES, STEP, Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
@@ -20,6 +26,7 @@ MODAL = {
 }
 WORK = {"54": "G54", "55": "G55", "56": "G56", "57": "G57", "505": "G58", "506": "G59"}
 PLANES = {"17": "XY", "18": "ZX", "19": "YZ"}
+NO_OFFSET = "G500"
 REASONS = {
     "53": "G53 leaves basic frames in force, which only the control knows; SUPA does not",
     "58": "G58 is a programmable shift, and no work offset",
@@ -30,7 +37,10 @@ REASONS = {
     "291": "G291 switches to another language",
     "500": "G500 leaves basic frames in force, which only the control knows",
 }
-HINTS = {"70": ("write G700 in its place if feeds are in inches too",)}
+HINTS = {
+    "53": ('write SUPA in its place; or say basic-frames = "none" in [control], if it is so',),
+    "70": ("write G700 in its place if feeds are in inches too",),
+}
 ORIENTATION = {"ORIAXES": 0, "ORIVECT": 0, "ORIPLANE": 0, "ORIMKS": 1, "ORIWKS": 1}
 WHY = {
     "CT": "CT is an arc whose centre follows from the move before",
@@ -59,6 +69,8 @@ class Statements(gx.Translator):
     said, said_steps, said_centres   what the blocks have said of motion, G91 and G90.1
     following     TRAORI is in force;  orientation: what ORIAXES and ORIMKS and their like have said
     tool, waiting the tools in the spindle and of the last T;  edge: "0", "1", None where not known
+    straight      the plain words that stand for a line which computes, while they are read
+    promised      the edge that has been said between T and M6, or nothing
     changed       M6 has been;  comp: G41 or G42 is in force
     drilling      the cycle of MCALL;  once: that of a line;  holes: the places of a pattern
     """
@@ -78,6 +90,7 @@ class Statements(gx.Translator):
         self.tool: str | None = None
         self.waiting: str | None = None
         self.edge: str | None = None
+        self.promised = self.straight = ""
         self.drilling: cycles.Drilling | None = None
         self.once: cycles.Drilling | None = None
         self.holes: list[tuple[Decimal, Decimal]] = []
@@ -93,6 +106,10 @@ class Statements(gx.Translator):
             "header": self._nothing,
             "main_number": self._number,
         }
+
+    def text_of(self, item: gx.Item) -> str:
+        """Return an item as it is written."""
+        return (self.straight or self.lines[self.line])[slice(*item.place)]
 
     def _nothing(self, line: Line, item: gx.Item) -> None:
         """Take labels, which jumps look for, and the name of the program."""
@@ -149,6 +166,8 @@ class Statements(gx.Translator):
             line.changes = item
         elif letter == "M" and number.isdigit() and int(number) == 17 and self.reading.crosses:
             self.refuse("M17 returns to a program that is not here", item)
+        elif letter == "M" and number.isdigit() and int(number) in GEARS:
+            line.asides.append(f"M{number}")
         elif letter == "M" and number.isdigit() and int(number) not in OWN:
             line.others.append(f"M{number}")
         elif letter == "T" and number.isdigit():
@@ -246,10 +265,19 @@ class Statements(gx.Translator):
             self._units(line, item, code)
         elif code in ("110", "111", "112"):
             self._one(line, "pole", item, (code, item))
-        elif code == "153":
+        elif code == "153" or (code == "53" and self.has_no_basic_frame):
             line.machine = item
+        elif code == "500" and not self.reading.stays:
+            self._once(line, item, "work")
+            line.work = NO_OFFSET, item
+            line.asides.append(NO_OFFSET)
         else:
             self.refuse(REASONS.get(code, f"G{code} is not read"), item, *HINTS.get(code, ()))
+
+    @property
+    def has_no_basic_frame(self) -> bool:
+        """Whether the machine file says that no basic frame is in force."""
+        return self.reading.control.get("basic-frames") == "none"
 
     def _units(self, line: Line, item: gx.Item, code: str) -> None:
         if code == "71" and self.reading.units != "mm":
@@ -310,8 +338,10 @@ class Statements(gx.Translator):
     def _goes_along(self, line: Line, item: gx.Item, what: str, value: str) -> None:
         """Let what has a tolerance go along. Raises InputError for one in inches."""
         inches = (self.unit or self.reading.units) in ("G20", "in")
-        if value != "()" and self.reading.asides and inches:
-            self.refuse(f"{what} in inches, beside moves that are written anew", item)
+        counts = not value.endswith("()") and not value.upper().startswith("GROUP")
+        if counts and self.reading.asides and inches:
+            said = what or value.partition("(")[0]
+            self.refuse(f"{said} in inches, beside moves that are written anew", item)
         line.asides.append(f"{what}{value}")
 
     # --- commands ---
@@ -337,6 +367,9 @@ class Statements(gx.Translator):
         elif name == "MCALL":
             line.modal = item
             self.drilling = None
+        elif name in ("CYCLE800", "CYCLE832") and self._quiet(name, [""]):
+            self._one(line, "alone", item)
+            line.asides += [f"{name}()"] if name == "CYCLE832" else []
         else:
             self.refuse(WHY.get(name, f"{name} is not read"), item)
 
@@ -344,53 +377,12 @@ class Statements(gx.Translator):
         self._one(line, "act", item, ("M128" if name == "TRAORI" else "M129", item))
 
     def _call(self, line: Line, item: gx.Item) -> None:
-        name, given = cycles.arguments(item)
-        if name == "TRAORI" and given in ([""], ["1"]):
-            self._switched(line, item, name)
-        elif name in cycles.READ:
-            self._one(line, "cycle", item)
-            self._drilled(line, item, name, given)
-        elif name in ("HOLES1", "HOLES2") and self.drilling is not None:
-            self._one(line, "cycle", item)
-            self.once = self.drilling
-            try:
-                stands = [self.place.known(axis) for axis in self.plane]
-                self.holes = cycles.row(given, stands) if name[-1] == "1" else cycles.circle(given)
-            except cycles.CycleError as error:
-                self.refuse(f"{name}: {error}", item)
-        elif self._quiet(name, given):
-            self._one(line, "alone", item)
-            if name == "CYCLE832":
-                self._goes_along(line, item, name, f"({','.join(given)})")
-        else:
-            why = WHY.get(name, f"{name}(...) is not read")
-            self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
+        """Take a call with arguments."""
+        raise NotImplementedError
 
     def _quiet(self, name: str, given: Sequence[str]) -> bool:
         """Whether a call moves nothing and changes no word behind it."""
-        if name == "CYCLE800":
-            return given == [""] or self._stands_still(given)
-        return name == "WORKPIECE" or (name == "CYCLE832" and cycles.keeps_path(given))
-
-    def _stands_still(self, given: Sequence[str]) -> bool:
-        """Whether a swivel to nowhere turns no axis: two of them at least are known to be at 0."""
-        return (
-            self.place.unturned() and self.place.rotary_axes > 1 and cycles.swivels_nowhere(given)
-        )
-
-    def _drilled(self, line: Line, item: gx.Item, name: str, given: Sequence[str]) -> None:
-        """Take a cycle, for this place or, behind MCALL, for those of the lines that follow."""
-        if self.following or self.comp:
-            self.refuse(f"{name} under TRAORI or compensation", item)
-        axis = next(a for a in LINEAR if a not in self.plane)
-        try:
-            hole = cycles.drilling(name, given, axis)
-        except cycles.CycleError as error:
-            self.refuse(f"{name}: {error}", item)
-        if line.modal is None:
-            self.once = hole
-        else:
-            self.drilling, line.cycle = hole, None
+        raise NotImplementedError
 
     def first_of(self, line: Line) -> gx.Item | None:
         """Return the first word of an arc."""

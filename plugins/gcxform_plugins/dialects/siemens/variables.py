@@ -34,11 +34,15 @@ NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 
 @dataclass
 class Call:
-    """A subprogram that is executed: its lines, the line behind the call, how often it is due."""
+    """A subprogram that is executed: its lines, the line behind the call, how often it is due.
+
+    saved  what was in force before it, where its PROC says SAVE
+    """
 
     lines: range
     back: int
     times: int = 1
+    saved: Any = None
 
 
 class Variables(Blocks):

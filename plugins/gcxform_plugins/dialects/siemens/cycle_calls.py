@@ -1,0 +1,66 @@
+"""Calls with arguments in a line for a SINUMERIK: cycles, patterns, and what moves nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens import cycles as cycles
+from gcxform_plugins.dialects.siemens.asides import TELLING
+from gcxform_plugins.dialects.siemens.line import Line
+from gcxform_plugins.dialects.siemens.place import LINEAR
+from gcxform_plugins.dialects.siemens.reading import WHY, Statements
+
+
+class CycleCalls(Statements):
+    """Takes calls into a line."""
+
+    def _call(self, line: Line, item: gx.Item) -> None:
+        name, given = cycles.arguments(item)
+        if name == "TRAORI" and given in ([""], ["1"]):
+            self._switched(line, item, name)
+        elif name in cycles.READ:
+            self._one(line, "cycle", item)
+            self._drilled(line, item, name, given)
+        elif name in ("HOLES1", "HOLES2") and self.drilling is not None:
+            self._one(line, "cycle", item)
+            self.once = self.drilling
+            try:
+                stands = [self.place.known(axis) for axis in self.plane]
+                self.holes = cycles.row(given, stands) if name[-1] == "1" else cycles.circle(given)
+            except cycles.CycleError as error:
+                self.refuse(f"{name}: {error}", item)
+        elif self._quiet(name, given):
+            self._one(line, "alone", item)
+            if name in TELLING or name == "CYCLE832":
+                self._goes_along(line, item, "", self.text_of(item))
+        else:
+            why = WHY.get(name, f"{name}(...) is not read")
+            self.refuse(f"{why}, with these arguments" if name in WHY else why, item)
+
+    def _quiet(self, name: str, given: Sequence[str]) -> bool:
+        """Whether a call moves nothing and changes no word behind it."""
+        if name == "CYCLE800":
+            return given == [""] or self._stands_still(given)
+        steers = name == "CYCLE832" and cycles.keeps_path(given, self.following)
+        return name in TELLING or steers
+
+    def _stands_still(self, given: Sequence[str]) -> bool:
+        """Whether a swivel to nowhere turns no axis: two of them at least are known to be at 0."""
+        return (
+            self.place.unturned() and self.place.rotary_axes > 1 and cycles.swivels_nowhere(given)
+        )
+
+    def _drilled(self, line: Line, item: gx.Item, name: str, given: Sequence[str]) -> None:
+        """Take a cycle, for this place or, behind MCALL, for those of the lines that follow."""
+        if self.following or self.comp:
+            self.refuse(f"{name} under TRAORI or compensation", item)
+        axis = next(a for a in LINEAR if a not in self.plane)
+        try:
+            hole = cycles.drilling(name, given, axis)
+        except cycles.CycleError as error:
+            self.refuse(f"{name}: {error}", item)
+        if line.modal is None:
+            self.once = hole
+        else:
+            self.drilling, line.cycle = hole, None
