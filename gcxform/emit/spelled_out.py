@@ -54,7 +54,8 @@ def spelled_out(
     lines, of = [line for line, _ in both], [line for _, line in both]
     ends = [*(speller.lines(f"({OPEN_SEAL})") if seals else ()), *speller.closing()]
     lines, of = speller.numbered([*lines, *ends]), [*of, *[of[-1] if of else 0] * len(ends)]
-    return "".join(f"{line}\n" for line in lines).encode("latin-1"), of, speller.left_out
+    end = "\r\n" if blocks and blocks[0].endswith(b"\r\n") else "\n"
+    return "".join(f"{line}{end}" for line in lines).encode("latin-1"), of, speller.left_out
 
 
 def inch_first(blocks: Sequence[bytes], inch: bool) -> bool:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cache
 from itertools import accumulate
@@ -21,7 +21,7 @@ from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.items import Item, Part, part_of
 from gcxform.flow.learned import CODE, DIGITS, Ahead, Slots
-from gcxform.flow.speller import ASIDE
+from gcxform.flow.speller import ASIDE, HIDDEN
 from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
@@ -31,6 +31,8 @@ COMMENT = "comment"
 LATELY = 4096  # shapes with numbers in names and comments that are kept
 AHEAD, SOME = 512, 64  # lines that are split at once, and how many of such parts are kept
 BRACKETS = str.maketrans(f"(){ASIDE}", "[] ")
+IN_ITS_LANGUAGE = HIDDEN | str.maketrans(ASIDE, " ")
+"""What brackets in comments become where they come back: in the language that was read."""
 
 
 @dataclass(eq=False, slots=True)
@@ -76,6 +78,7 @@ class LineShapes(ABC):
         self.file = file
         self.dialect = dialect
         self.line = 0
+        self.comes_back = False
         self._lark = _grammar(*self.grammar)
         self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, Shape] = {}
@@ -195,7 +198,7 @@ class LineShapes(ABC):
 
     def comment(self, text: str) -> str:
         """Return the comment of a block for one of the language."""
-        return _comment(text)
+        return _comment(text, IN_ITS_LANGUAGE if self.comes_back else BRACKETS)
 
     def _slots(self, parts: Sequence[Part]) -> Slots | None:
         """Return what can be learnt of lines with these parts."""
@@ -246,8 +249,8 @@ def _grammar(package: str, name: str) -> Lark:
     return kept.grammar(package, name)
 
 
-def _comment(text: str) -> str:
+def _comment(text: str, brackets: Mapping[int, str | int]) -> str:
     """Return a comment in round brackets."""
     inner = text[1:].removesuffix(")") if text.startswith("(") else text.lstrip(";* \t")
     bare = inner.strip(" \t")  # half of a letter of two bytes is no blank
-    return f"({bare.translate(BRACKETS)})"
+    return f"({bare.translate(brackets)})"

@@ -84,7 +84,8 @@ class Speller(ABC):
         self.tool_told = next((each[1:] for each in asides if each.startswith(TOLD)), "")
         asides = [each for each in asides if not each.startswith((NAMED, TOLD))]
         words = [each for each in words if not asides or each != (ALONG[0], ALONG[1:])]
-        return asides, [each for each in comments if not each.startswith(ASIDE)], words
+        others = [each.translate(SHOWN) for each in comments if not each.startswith(ASIDE)]
+        return asides, others, words
 
     @abstractmethod
     def lines(self, block: str) -> list[str]:

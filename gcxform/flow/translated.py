@@ -62,7 +62,8 @@ def translated_so_far(
     source: Source, dialect: type[Dialect], reading: Reading
 ) -> tuple[Translated, InputError | None]:
     """Return the blocks of a program up to the line that is refused, and why it is."""
-    lines = lines_of(b"".join(source.windows()))
+    whole = b"".join(source.windows())
+    lines = lines_of(whole)
     if lines and not lines[-1]:
         lines.pop()
     beside = () if source.folder is None else (source.folder,)
@@ -75,7 +76,8 @@ def translated_so_far(
         if translator.again <= stay:
             break
         stay |= translator.again
-    joined = "\n".join([*blocks, ""]).encode("latin-1")
+    end = "\r\n" if lines[:1] and whole[len(lines[0]) :].startswith(b"\r\n") else "\n"
+    joined = end.join([*blocks, ""]).encode("latin-1")
     made = Translated(source, translator, joined, origin, np.array(visits, np.int64), lost)
     return made, refused
 

@@ -65,7 +65,7 @@ class Translator(LineShapes):
 
     def __init__(self, lines: list[str], file: str, dialect: type[Dialect], reading: Reading):
         super().__init__(lines, file, dialect)
-        self.reading = reading
+        self.reading, self.comes_back = reading, reading.asides
         self.at = self.visit = 0
         self.own = len(lines)
         """How many lines are those of the program; behind them are those of files that it calls."""

@@ -134,7 +134,7 @@ class SpelledOut:
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
-            self._blocks.splitlines(),
+            self._blocks.splitlines(keepends=True),
             lines,
             self.kind,
             self.given.name,

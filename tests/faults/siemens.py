@@ -617,7 +617,7 @@ MUTATIONS = (
     Mutation(
         "siemens written: behind SUPA there is no length",
         LINES,
-        "self.waits = self.waits or (along and bool(self.length))\n",
+        "self.waits = bool(self.length)\n",
         "self.waits = False\n",
         "tests/test_siemens_written.py::"
         "test_a_length_ends_for_a_move_in_the_machine_and_is_in_force_again",
@@ -1364,6 +1364,27 @@ MUTATIONS = (
         "        if saved(self)[1] != others:\n",
         "        if False:\n",
         f"{CASES}[dialects/siemens/call-that-saves-a-plane]",
+    ),
+    Mutation(
+        "siemens: the name of a program does not go along",
+        UNITS,
+        "if goes else []",
+        "if not goes else []",
+        f"{CASES}[dialects/siemens/compensated-with-its-head]",
+    ),
+    Mutation(
+        "siemens: that R parameters are set no more is not said",
+        VARIABLES,
+        "            self.assumed[UNSET] = None\n",
+        "            pass\n",
+        f"{CASES}[dialects/siemens/compensated-with-its-head]",
+    ),
+    Mutation(
+        "a program in a language of its own loses the ends of its lines",
+        "gcxform/flow/translated.py",
+        "if lines[:1] and whole",
+        "if not lines[:1] and whole",
+        f"{CASES}[bytes/crlf-siemens]",
     ),
     Mutation(
         "siemens: a dwell of ten seconds is a mode",

@@ -37,6 +37,6 @@ def choices_of(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> tuple[
 def _order(name: str, dialect: type[Dialect]) -> list[str]:
     """Return when an M code beside a move acts, but for stops, which act behind it everywhere."""
     code = dialect.m_codes.get(int(float(name[1:] or -1)))
-    if code is None or code.group == "stop" or code.ends:
+    if code is None or code.group in ("stop", "along") or code.ends:
         return []
     return [f"{name} beside a move acts {'after' if code.after else 'before'} it"]

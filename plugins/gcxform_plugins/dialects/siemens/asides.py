@@ -6,6 +6,8 @@ along as it was programmed, in a comment of its block.
 
 from __future__ import annotations
 
+import re
+
 INERT = frozenset(("601", "602", "603", "290", "450", "451"))
 AROUND = frozenset(("G450", "G451"))
 """Those that say what joins moves outside, under compensation."""
@@ -26,3 +28,11 @@ TELLING = frozenset(("WORKPIECE", "GROUP_BEGIN", "GROUP_END", "GROUP_ADDEND"))
 GEARS = frozenset(range(40, 46))
 """M40 to M45: the gear of the spindle (PM 105)."""
 TOLERANCES = frozenset(("ADIS", "ADISPOS", "CTOL", "OTOL", "ATOL"))
+LEFT_OUT = "{} left out: how fast, how smooth, how near to a corner, and what the screen shows"
+NAME = re.compile(r"%?[A-Z_]+[0-9]*", re.IGNORECASE)
+
+
+def named(aside: str) -> str:
+    """Return the name of what goes along."""
+    found = NAME.match(aside)
+    return found[0].upper() if found else aside

@@ -12,7 +12,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.siemens.asides import AROUND, ENTRIES, KONT
+from gcxform_plugins.dialects.siemens.asides import AROUND, ENTRIES, KONT, named
 from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
 from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import Drilling
@@ -33,6 +33,7 @@ class Blocks(Contours):
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
+    left_out   the names of what goes along to the same control, and is not said to another one
     owed       the block of an edge that was said beside SUPA, where no word counts by it
     corners    G450 or G451, as it was said;  around: KONT is in force
     """
@@ -54,6 +55,7 @@ class Blocks(Contours):
         super().__init__(*program)
         self.read = {**self.read, "tool_name": self._tool_name}
         self.tool_names = gx.ToolNames(self.reading)
+        self.left_out = set[str]()
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line, the first with its number. Raises InputError."""
@@ -72,6 +74,8 @@ class Blocks(Contours):
         except PlaceError as error:
             at = line.alone or self.any_of(line)
             raise self.refusal(error.code, error.message, at, error.hint) from None
+        if line.asides and not self.reading.asides:
+            self.left_out.update(map(named, line.asides))
         if line.asides and self.reading.asides:
             made[:1] = [
                 f"{made[0] if made else ''} {gx.Speller.along(' '.join(line.asides))}".lstrip()

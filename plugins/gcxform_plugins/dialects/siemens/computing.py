@@ -84,7 +84,13 @@ class Computing(Deciding):
             plain, given = line.text(numbers), line.given(numbers)
         except (v.NoValueError, OverflowError):
             return None
-        return plain, lambda: self.r.update(given)
+        return plain, lambda: self._take(given)
+
+    def _take(self, given: Sequence[tuple[int, Any]]) -> None:
+        """Take R parameters of a line that is compiled."""
+        self.r.update(given)
+        if given:
+            self.tell_of_parameters()
 
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line. Raises InputError."""

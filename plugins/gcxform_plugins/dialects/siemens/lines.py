@@ -46,6 +46,8 @@ BLENDS = re.compile(r"G64[1-5]")
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
 OWN = (17, 128, 129, 9000, 9001)
 NO_LENGTH = "0"
+PATH = "$PATH="
+"""What tells, right behind its semicolon, the folder of a program (PM 43)."""
 
 
 class Lines(gx.Speller):
@@ -83,7 +85,8 @@ class Lines(gx.Speller):
         said = [*asides, *self._said(words)]
         found = [f"{slash[1]}{line}" if slash else line for line in said]
         if comments:
-            text = "; " + " ".join(comments)
+            lead = ";" if comments[0].startswith(PATH) else "; "
+            text = lead + " ".join(comments)
             found = [f"{found[0]} {text}", *found[1:]] if found else [text]
         return found
 
@@ -227,9 +230,8 @@ class Lines(gx.Speller):
     def _in_machine(
         self, number: str, names: list[str], words: list[tuple[str, str]]
     ) -> Iterator[str]:
-        """Yield SUPA, which asks for D0 where Z moves; the length that was in force waits."""
+        """Yield SUPA, which asks for D0; the length that was in force waits."""
         rest = [each for each in words if each[0] != "N" and each != ("G", "53")]
         said = " ".join(self._words(rest, dict(rest)))
-        along = "Z" in dict(rest) or self.plane != "G17" or self.length in ("", NO_LENGTH)
-        yield f"{number}SUPA {said} D0" if along else f"{number}SUPA {said}"
-        self.waits = self.waits or (along and bool(self.length))
+        yield f"{number}SUPA {said} D0"
+        self.waits = bool(self.length)

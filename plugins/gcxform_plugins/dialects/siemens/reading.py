@@ -270,7 +270,7 @@ class Statements(gx.Translator):
         elif code == "500" and not self.reading.stays:
             self._once(line, item, "work")
             line.work = NO_OFFSET, item
-            line.asides.append(NO_OFFSET)
+            line.asides += [NO_OFFSET] if self.reading.asides else []
         else:
             self.refuse(REASONS.get(code, f"G{code} is not read"), item, *HINTS.get(code, ()))
 

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.siemens.asides import LEFT_OUT
 from gcxform_plugins.dialects.siemens.calls import Calls
 
 HEADER = re.compile(
@@ -97,7 +98,8 @@ class Units(Calls):
             self.at_end()
         elif self._has_code(range(self.part.start, self.line)):
             self._refuse(self.line, "here another program begins")
-        return []
+        goes = self.reading.asides and self.line in (0, self.main.start)
+        return [gx.Speller.along(self.text_of(items[0]))] if goes else []
 
     def closing(self) -> Iterator[str]:
         """Say what was not executed of the file."""
@@ -106,6 +108,8 @@ class Units(Calls):
             names = [f"{name}_{kind}" for name, kind, _ in others if (kind in PROGRAMS) == programs]
             if names:
                 self.assumed[text.format(", ".join(names))] = None
+        if self.left_out:
+            self.assumed[LEFT_OUT.format(", ".join(sorted(self.left_out)))] = None
         return iter(())
 
 

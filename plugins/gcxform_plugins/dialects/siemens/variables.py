@@ -23,6 +23,7 @@ from gcxform_plugins.dialects.siemens.structure import Structure, names_set
 WORDS = re.compile(
     r"[XYZABCIJKFSTDM]|[IJK]1|CR|RPL|AR|AP|RP|ANG|TURN|RNDM?|CH[RF]|FRC|ADIS|ADISPOS|CTOL|OTOL|ATOL"
 )
+UNSET = "what is written sets no R parameter: what runs behind it, or calls it, may not read them"
 STAYS: Value = float("nan")
 """What stands in SET(1, , 3) where a value is left out: the element keeps its own."""
 QU = "QU"
@@ -145,6 +146,7 @@ class Variables(Blocks):
             if len(given) != 1 or len(numbers) != 1:
                 raise v.NoValueError("R parameters take one number")
             self.r[numbers[0]] = converted("REAL", given[0])
+            self.tell_of_parameters()
             return
         cell = self._cell(name)
         assert cell is not None
@@ -153,6 +155,11 @@ class Variables(Blocks):
             return
         # Of what type a variable of the control is nobody has said: what it makes of this is open.
         self._fill(cell, index, [LOST] if cell is self.given.get(name) else given)
+
+    def tell_of_parameters(self) -> None:
+        """Say that R parameters, which outlive the program, are set no more."""
+        if self.reading.asides:
+            self.assumed[UNSET] = None
 
     def _fill_alike(self, cell: Cell, index: Node | None, node: Node) -> None:
         """Set elements of an array to one value: to its end, or as many as REP says."""

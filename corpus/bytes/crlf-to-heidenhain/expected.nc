@@ -1,0 +1,4 @@
+0 BEGIN PGM A MM
+1 L X+0 Y+20 Z+5 R0 FMAX ; [here]
+2 M30
+3 END PGM A MM
