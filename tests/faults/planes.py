@@ -112,4 +112,11 @@ MUTATIONS = (
         'return replace(state, tilt="")',
         case("folded"),
     ),
+    Mutation(
+        "planes: other controls take the attitudes of a Fanuc",
+        "plugins/gcxform_plugins/dialects/controls/industrial.py",
+        "NO_PLANES = replace(Fanuc.tip_rule, planes={})",
+        "NO_PLANES = Fanuc.tip_rule",
+        "tests/test_corpus.py::test_case[dialects/controls/mazak-plane]",
+    ),
 )

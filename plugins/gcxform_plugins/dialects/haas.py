@@ -172,6 +172,7 @@ class Haas(Fanuc):
         codes={"G234": "G43"},
         vector_codes={},
         unfollowed={"G268": "plane", "G253": "plane", "G269": "no-plane", "G234": "tip"},
+        planes={},
     )
     cycle_rule = replace(
         Fanuc.cycle_rule,

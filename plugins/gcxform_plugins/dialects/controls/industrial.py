@@ -43,6 +43,8 @@ SPACE = "it cuts an arc in space"
 BY_H = "posts for it call by H"
 
 UNTITLED = replace(Fanuc.program_rule, has_title=False)
+NO_PLANES = replace(Fanuc.tip_rule, planes={})
+"""Which of two attitudes the others take is not known."""
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
 
 
@@ -51,6 +53,7 @@ class Mazak(Fanuc):
 
     name = "mazak"
     kin = "fanuc"
+    tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     point_rule = replace(Fanuc.point_rule, dwell={"X": 1.0, "P": 0.001})
@@ -61,6 +64,7 @@ class Mitsubishi(Fanuc):
 
     name = "mitsubishi"
     kin = "fanuc"
+    tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
 
@@ -80,6 +84,7 @@ class Syntec(Fanuc):
 
     name = "syntec"
     kin = "fanuc"
+    tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
@@ -110,6 +115,7 @@ class Brother(Fanuc):
 
     name = "brother"
     kin = "fanuc"
+    tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
@@ -133,6 +139,7 @@ class Hurco(Fanuc):
 
     name = "hurco"
     kin = "fanuc"
+    tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     codes: ClassVar[Mapping[str, gx.Code]] = {
