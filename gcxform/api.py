@@ -12,7 +12,7 @@ import numpy as np
 
 from gcxform.config import arguments
 from gcxform.contract.own_codes import with_own_codes
-from gcxform.contract.tilted_planes import with_planes
+from gcxform.contract.tilted_planes import with_known_planes
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.errormodel.model import ErrorModel
@@ -64,9 +64,7 @@ class Program:
 
     def __post_init__(self) -> None:
         kind = with_own_codes(self.dialect, self.reading.control)
-        if self.reading.tables is not None:
-            kind = with_planes(kind, "followed")
-        object.__setattr__(self, "dialect", kind)
+        object.__setattr__(self, "dialect", with_known_planes(kind, self.reading))
 
     @cached_property
     def path(self) -> Toolpath:

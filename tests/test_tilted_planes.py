@@ -14,7 +14,10 @@ import gcxform as gx
 from gcxform.machine.file import load_machine
 from gcxform.machine.machine import Machine
 from gcxform.modal.state import Reading
+from gcxform.pipeline.chain_text import parse_chain
 from gcxform.plugin.registry import default_registry
+from gcxform.syntax.source import Source
+from gcxform.view.reading import read
 
 TOOL = 150.0
 AXES = {
@@ -106,3 +109,26 @@ def test_a_point_of_a_plane_is_where_quaternions_say(seed: int, tmp_path: Path) 
     for (_, axis, _), angle in reversed([*zip(AXES[name], found[3:], strict=True)]):
         normal = rotated(normal, axis, -angle)
     assert normal == pytest.approx((0, 0, 1), abs=1e-8)
+
+
+def test_a_plane_is_compared_and_shown_where_it_leads(tmp_path: Path) -> None:
+    """The shipped example, read by itself, is the same as its plain moves for another control."""
+    example = Path(__file__).parents[1] / "examples" / "three-plus-two"
+    machine, program = (
+        load_machine(example / "machine.toml", default_registry().machines),
+        example / "wedge.nc",
+    )
+    chain, registry = "cycles | offsets | absolute", default_registry()
+    fanuc, linuxcnc = (registry.dialect(name) for name in ("fanuc", "linuxcnc"))
+    steps = parse_chain(chain, tmp_path, registry)
+    plain = gx.Pipeline(fanuc, linuxcnc, tuple(steps), machine=machine).run(program)
+    reading = Reading(start={"X": 0.0, "Y": 0.0, "Z": 300.0}).on(machine)
+    one = gx.Program(program.read_bytes(), fanuc, reading)
+    other = gx.Program(plain.text, linuxcnc, reading)
+    found = gx.compare(one, other)
+    assert found.deviation < 5e-5
+    assert found.parted is None
+    assert found.matched > 20
+    assert read(Source.of_bytes(one.text, "wedge.nc"), fanuc, reading).path.end[
+        -1
+    ] == pytest.approx(one.path.end[-1], nan_ok=True)

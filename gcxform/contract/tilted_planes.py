@@ -19,6 +19,7 @@ from gcxform.dialect.codes import AXES, Effect
 from gcxform.dialect.dialect import Dialect
 from gcxform.machine.chain import tables_of
 from gcxform.machine.machine import Machine
+from gcxform.modal.state import Reading
 from gcxform.toolpath.facts import AXIS_POSITIONS, TIP_POSITIONS
 
 EULER = AXES + "PQRIJK"
@@ -47,6 +48,11 @@ def treatment(same: bool, steps: Sequence[Pass], machine: Machine | None) -> Whi
     tips = any(kinds & (step.ensures | step.clears) for step in steps)
     follows = machine is not None and tables_of(machine) is not None
     return "followed" if follows and not tips else "refused"
+
+
+def with_known_planes(dialect: type[Dialect], reading: Reading) -> type[Dialect]:
+    """Return the dialect in which a program is read by itself: planes are followed, if they can."""
+    return dialect if reading.tables is None else with_planes(dialect, "followed")
 
 
 def with_planes(dialect: type[Dialect], which: Which) -> type[Dialect]:

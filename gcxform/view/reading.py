@@ -12,6 +12,7 @@ import numpy as np
 from gcxform.api import joined
 from gcxform.contract.options import KinematicsFile
 from gcxform.contract.passes import Pass
+from gcxform.contract.tilted_planes import with_known_planes
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.straightened import located, written_out
@@ -69,6 +70,7 @@ class Shown:
 
 def read(source: Source, dialect: type[Dialect], reading: Reading) -> Shown:
     """Return a program as it is shown. Raises InputError where it is refused."""
+    dialect = with_known_planes(dialect, reading)
     return _shown(source, written_out(source, dialect, reading), dialect, reading)
 
 

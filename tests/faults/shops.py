@@ -324,7 +324,7 @@ FAULTS = (
         "G69 leaves a tilted plane where it is",
         "gcxform/modal/frames/transforms.py",
         'return replace(state, tilt="", plane=None)',
-        'return replace(state, plane=None)',
+        "return replace(state, plane=None)",
         f"{CASE}[dialects/fanuc/tilted-plane-kept]",
     ),
     (
