@@ -42,9 +42,9 @@ def events_of(
     if not within and not lines.unknown:
         return Records(events)
     rank = [2 * each for each in after]
-    for first, behind, event in within:
-        row = int(np.searchsorted(rows, first)) + behind
-        events.append(Event(row, event.what, event.values, event.line, True))
+    begun = np.searchsorted(rows, [first for first, _, _ in within]).tolist()
+    for row, (_, behind, event) in zip(begun, within, strict=True):
+        events.append(Event(row + behind, event.what, event.values, event.line, True))
         rank.append(1)
     open_rows = np.searchsorted(rows, [each.line for each in lines.unknown]).tolist()
     for each, row in zip(lines.unknown, open_rows, strict=True):

@@ -188,9 +188,9 @@ TOGETHER = (
         "for event in events]) - bounds[whose]",
         "for event in events])",
     ),
-    ("end at R under G98", "if high else clearance", "if False else clearance"),
-    ("keep the dwell before them", "if place >= first:\n", "if False:\n"),
-    ("forget that R is incremental", "clearance += initial", "pass"),
+    ("end at R under G98", "if plain.high else clearance", "if False else clearance"),
+    ("keep the dwell before them", "if plain.dwell == plain.dwell:\n", "if False:\n"),
+    ("forget that R is incremental", "clearance + initial if", "clearance if"),
     ("forget increments before the last place", "moved[place - first]", "0.0"),
     ("are one", "bounds[:-1], positions", "bounds[:1], positions[:1]"),
 )
@@ -201,6 +201,13 @@ MUTATIONS = (
     *(
         Mutation(f"cycles: stretches made together {name}", DRILLING, old, new, STRETCHES)
         for name, old, new in TOGETHER
+    ),
+    Mutation(
+        "cycles: stretches made together have words of the stretch before",
+        "gcxform/modal/moves/pattern_ends.py",
+        "place >= first, columns",
+        "place >= 0, columns",
+        STRETCHES,
     ),
     Mutation(
         "writing: what a cycle stores by steps is dropped where steps become positions",

@@ -73,12 +73,6 @@ class CallColumns:
             self._columns[address] = self._column(address)
         return np.asarray(self._columns[address][here])
 
-    def number(self, address: str, line: int) -> float:
-        """Return a word on one line, nan where there is none; a length in mm."""
-        if address not in self._columns:
-            self._columns[address] = self._column(address)
-        return float(self._columns[address][line])
-
     def _column(self, address: str) -> Floats:
         """Return a word on all lines of the window, nan where it is none of a call's."""
         if not address:
@@ -118,8 +112,8 @@ class CallColumns:
             hint = "give the increment as a length: P counts ms then"
             self.lines.findings.add(line, "GX205", message, "P", hint)
 
-    def last(self, address: str, line: int) -> int:
-        """Return the last call with a word, on a line or before it; -1 for none.
+    def lasts(self, address: str) -> Ints:
+        """Return the last call with a word, on each line or before it; -1 for none.
 
         Words of axes count where they place a hole in G90.
         """
@@ -127,7 +121,7 @@ class CallColumns:
             which = self.calls if address in ("P", "R") else self._drilled & ~self.modes.incremental
             which = which & ~np.isnan(self.word(address, slice(None)))
             self._lasts[address] = self._latest(which)
-        return int(self._lasts[address][line])
+        return self._lasts[address]
 
     def _latest(self, which: Flags) -> Ints:
         """Return the last of some lines on each line or before it, -1 for none."""

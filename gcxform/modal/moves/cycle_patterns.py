@@ -8,6 +8,7 @@ together: that is what makes many short patterns cheap.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -18,10 +19,11 @@ from gcxform.modal.cycles.expansion import Calls, Cycles
 from gcxform.modal.cycles.stretch import Mode, Stretch
 from gcxform.modal.frames.track import PLANES, Break, Track
 from gcxform.modal.moves.cycle_calls import CallColumns
+from gcxform.modal.moves.pattern_ends import PatternEnd, pattern_ends
 from gcxform.modal.moves.rows import Rows
 from gcxform.modal.numbers_without_point import hint_of_rounding
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.system.arrays import Flags, Ints
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import union
 from gcxform.toolpath.frames import Frame, by_frame
 from gcxform.toolpath.path import Event, Form, Plane
@@ -64,6 +66,12 @@ class Drilling:
         self.calls = self.columns.calls
         self.columns.lost[[*self._lost]] = True
         self._followed: list[_Followed] = []
+        self.ends: dict[int, PatternEnd] = {}
+
+    def take(self, borders: Sequence[tuple[int, int]]) -> None:
+        """Take the stretches of the window, before the first of them is followed."""
+        if self.cycles is not None and self.calls.any():
+            self.ends = pattern_ends(self.columns, borders)
 
     def borders(self) -> Ints:
         """Return the lines at which a stretch of calls begins or ends."""
@@ -131,8 +139,9 @@ class Drilling:
         after = words.copy()
         stretch, dwell = None, self.cycles.mode.dwell
         self._refuse_other_zero(first, last, plane.axes[2])
-        if not track.frame.polar and self._is_plain(first, last):
-            end = self._plain_end(first, last, words, plane)
+        plain = None if self.cycles.mode.code or track.frame.polar else self.ends.get(first)
+        if plain is not None:
+            end = self._plain_end(first, plain, words, plane)
         else:
             before = np.array([words[axis] for axis in plane.axes])
             calls = self.columns.calls_on(slice(first, last), before, plane, unit)
@@ -179,43 +188,29 @@ class Drilling:
         first, second = (np.where(given, value, np.nan) for value, given in placed)
         return replace(calls, first=first, second=second)
 
-    def _is_plain(self, first: int, last: int) -> bool:
-        """Whether a stretch begins without a cycle in force, ends with G80, and has one cycle."""
-        assert self.cycles is not None
-        if self.cycles.mode.code or last == self.lines.live:
-            return False
-        changes = self.columns.changes_until[last] - self.columns.changes_until[first + 1]
-        return bool(self.modes.cycle[last] == CYCLE_OFF and not changes)
-
-    def _plain_end(self, first: int, last: int, words: list[float], plane: Plane) -> list[float]:
+    def _plain_end(
+        self, first: int, plain: PatternEnd, words: list[float], plane: Plane
+    ) -> list[float]:
         """Return where the tool is after a plain stretch; take over the dwell that it leaves."""
         assert self.cycles is not None
-        before = [words[axis] for axis in plane.axes]
-        place = self.columns.last("P", last - 1)
-        if place >= first:
-            self.cycles.mode = Mode(dwell=self.columns.number("P", place))
-        end = [
-            self._arrived("XYZ"[axis], first, last, standing)
-            for axis, standing in zip(plane.axes[:2], before, strict=False)
-        ]
-        called, initial = int(self.columns.last_drilled[last - 1]), before[2]
-        if called < first:
+        if plain.dwell == plain.dwell:
+            self.cycles.mode = Mode(dwell=plain.dwell)
+        end = [self._arrived(axis, first, plain, words[axis]) for axis in plane.axes[:2]]
+        initial = words[plane.axes[2]]
+        if not plain.drills:
             return [*end, initial]
-        place = self.columns.last("R", called)
-        clearance = self.columns.number("R", place) if place >= first else np.nan
-        if self.modes.incremental[called]:
-            clearance += initial
-        high = bool(self.columns.common.initial[called])
-        return [*end, float(np.maximum(initial, clearance)) if high else clearance]
+        clearance = plain.clearance + initial if plain.relative else plain.clearance
+        return [*end, float(np.maximum(initial, clearance)) if plain.high else clearance]
 
-    def _arrived(self, axis: str, first: int, last: int, before: float) -> float:
+    def _arrived(self, axis: int, first: int, plain: PatternEnd, before: float) -> float:
         """Return where an axis of the plane is after a plain stretch."""
-        place, steps = self.columns.last(axis, last - 1), self.columns.increments_along(axis)
-        placed = place >= first
-        word = self.columns.number(axis, place) if placed else before
-        if steps is None or self.columns.added_until[first] == self.columns.added_until[last]:
-            return word
-        moved = np.cumsum(steps[first:last])
+        word = plain.words[axis]
+        placed = word == word
+        steps = self.columns.increments_along("XYZ"[axis]) if plain.stepped else None
+        if steps is None:
+            return word if placed else before
+        place = int(self.columns.lasts("XYZ"[axis])[plain.last - 1])
+        moved = np.cumsum(steps[first : plain.last])
         return float((word - moved[place - first] if placed else before) + moved[-1])
 
     # --- all stretches of the window ---
@@ -286,13 +281,15 @@ class Drilling:
         if after[normal] != words[normal]:
             self.track.lose(line + 1, "XYZ"[normal] if self.track.frame.matrix is None else "XYZ")
 
-    def _stretches(self, followed: list[_Followed], line: Ints, bounds: Ints) -> list[Stretch]:
+    def _stretches(
+        self, followed: list[_Followed], words: Floats, line: Ints, bounds: Ints
+    ) -> list[Stretch]:
         """Return the columns of stretches, those of plain ones as one."""
         stretches = [one.stretch for one in followed if one.stretch is not None]
         if stretches:
             return stretches
         assert self.cycles is not None
-        positions = np.array([one.words for one in followed])[:, list(followed[0].plane.axes)]
+        positions = words[:, list(followed[0].plane.axes)]
         calls = self.columns.calls_on(line, positions[0], followed[0].plane, followed[0].unit)
         dwells = np.array([one.dwell for one in followed])
         return [self.cycles.follow_fresh(calls, bounds[:-1], positions, dwells)]
@@ -300,9 +297,11 @@ class Drilling:
     def _rows_of(self, followed: list[_Followed]) -> Rows:
         """Return the moves of stretches of one plane and unit."""
         assert self.cycles is not None
-        line = np.concatenate([np.arange(one.first, one.last) for one in followed])
-        bounds = np.cumsum([0, *(one.last - one.first for one in followed)])
-        steps = self.cycles.steps(self._stretches(followed, line, bounds))
+        first, last = np.array([(one.first, one.last) for one in followed]).T
+        bounds = np.append(0, np.cumsum(last - first))
+        line = np.arange(bounds[-1]) + np.repeat(first - bounds[:-1], last - first)
+        before = np.array([one.words for one in followed])
+        steps = self.cycles.steps(self._stretches(followed, before, line, bounds))
         asked = {at for at, _ in self.lines.findings.found}  # a word that has no value looks absent
         for refusal in steps.refusals:
             place = int(line[refusal.call])
@@ -311,9 +310,9 @@ class Drilling:
             self.track.findings.add(place, "GX215", refusal.message, hint=refusal.hint)
         rows = steps.rows
         bounds = np.searchsorted(rows.call, bounds)
-        self._place_events(rows.events, bounds, [one.first for one in followed])
+        self._place_events(rows.events, bounds, first)
         which = np.repeat(np.arange(len(followed)), np.diff(bounds))
-        words = np.array([one.words for one in followed]).T[:, which].T
+        words = before.T[:, which].T
         words[:, list(followed[0].plane.axes)] = rows.end
         frame = np.array([one.frame for one in followed])[which]
         return Rows(
@@ -325,12 +324,11 @@ class Drilling:
             frame,
         )
 
-    def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: list[int]) -> None:
+    def _place_events(self, events: tuple[Event, ...], bounds: Ints, firsts: Ints) -> None:
         """Keep events by stretch, their rows counted from the first of it."""
         if not events:
             return
         lines = [event.line - self.lines.window.first_line for event in events]
         whose = np.searchsorted(firsts, lines, "right") - 1
         behind = np.array([event.row for event in events]) - bounds[whose]
-        stretch = np.array(firsts)[whose]
-        self.events += zip(stretch.tolist(), behind.tolist(), events, strict=True)
+        self.events += zip(firsts[whose].tolist(), behind.tolist(), events, strict=True)

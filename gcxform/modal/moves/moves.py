@@ -76,6 +76,7 @@ class Moves:
         self.track.may_step = may_be_blind(self.lines, self.modes, moving, self.pointing is None)
         lost = self.lines.loses_position()
         of = self._stretches(moving, lost)
+        self.drilling.take(of.borders)
         planes = InPlanes(self.track, of, self.lines.flag("own_moves"), lost)
         self.in_planes = planes if planes.any else None
         together = not (lost.any() or of.lost or self.lines.kept_calls or planes.any)
