@@ -845,15 +845,29 @@ MUTATIONS = (
     Mutation(
         "klartext: circles in runs turn about another place",
         RUNS,
-        "Decimal(self.pole[axis]) - Decimal(place[axis])",
-        "Decimal(place[axis]) - Decimal(self.pole[axis])",
+        "Decimal(plain(self.pole[a])) - Decimal(plain(place[a]))",
+        "Decimal(plain(place[a])) - Decimal(plain(self.pole[a]))",
         "tests/test_klartext_runs.py::test_a_run_of_lines_and_circles_ends_where_they_lead",
+    ),
+    Mutation(
+        "klartext: feeds of lines and circles in inches are of mm",
+        RUNS,
+        "if plan.feed and self.inch:",
+        "if not plan:",
+        "tests/test_klartext_runs.py::test_runs_are_their_lines",
+    ),
+    Mutation(
+        "klartext: the pole of circles in runs stays the one before",
+        RUNS,
+        "            self.pole = dict(said)\n",
+        "            pass\n",
+        "tests/test_klartext_runs.py::test_runs_are_their_lines",
     ),
     Mutation(
         "klartext: R of a line in a run is R0 whatever it says",
         RUNS,
-        'if plan.off and numbers[plan.first + len(plan.axes)] != "0":',
-        "if not plan:",
+        'if plan.off and (self.side or numbers[at + plan.behind] != "0"):',
+        "if plan.off and self.side:",
         "tests/test_klartext_runs.py::test_r_of_a_line_is_r0_where_it_says_so",
     ),
     Mutation(

@@ -10,7 +10,7 @@ and the last one of each run, is translated by itself.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -31,24 +31,53 @@ MOST_SHAPES = 32
 LEAST = 2  # lines
 SENSES = {"DR+": "G3", "DR-": "G2"}
 CIRCLES = frozenset(SENSES.values())
-CIRCLES_AT = ("X", "I"), ("Y", "J")
+NOT_SHOWN = "%.0s"
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What lines of a shape do: `code` is nothing for CC, `off` whether R0 is said.
 
-    The numbers of `axes` begin at `first`; behind them are that of R0 and that of F, if they stand.
+    The numbers of `axes` begin at `first`, and `behind` them are that of R0 and that of F, if they
+    stand; `count` is how many all are. `text` is the block without its code, with a place for each
+    number, and for I and J.
     """
 
     code: str
     axes: tuple[str, ...]
     first: int
+    behind: int
     feed: bool
     off: bool
+    count: int
+    text: str
 
 
-Line = tuple[Plan, Sequence[str]]
+class _Ends:
+    """Where lines have `led`, as their numbers stand, with the pole and the feed in force."""
+
+    def __init__(self, pole: dict[str, str], place: dict[str, str]) -> None:
+        self.pole, self.place = pole, place
+        self.led: dict[str, str] = {}
+        self.feed = ""
+
+    def take(self, plan: Plan, numbers: Sequence[str], at: int) -> None:
+        """Take what a line says, whose numbers begin `at` a place."""
+        said = zip(plan.axes, numbers[at + plan.first : at + plan.behind], strict=True)
+        if plan.code:
+            self.led.update(said)
+        else:
+            self.pole = dict(said)
+        if plan.feed:
+            self.feed = numbers[at + plan.count - 1]
+
+    def about(self) -> list[str]:
+        """Return I and J of a circle that begins here; nothing if a place is not known."""
+        known = self.place.keys() | self.led.keys()
+        if self.pole.keys() != {*"XY"} or not self.pole.keys() <= known:
+            return []
+        place = {axis: self.led.get(axis) or self.place[axis] for axis in "XY"}
+        return [exact(Decimal(plain(self.pole[a])) - Decimal(plain(place[a]))) for a in "XY"]
 
 
 class Runs(Klartext):
@@ -56,7 +85,7 @@ class Runs(Klartext):
 
     def __init__(self, *program: Any) -> None:
         super().__init__(*program)
-        self._plans: dict[Any, Plan] = {}
+        self._plans: dict[str, Plan] = {}
         self._known: dict[bool, dict[str, None]] = {True: {}, False: {}}
         self._runs: dict[bool, re.Pattern[str]] = {}
         self._text, self._starts = "", [0]
@@ -118,64 +147,83 @@ class Runs(Klartext):
 
         Where the last of them leads to is told by the one that is translated behind it.
         """
-        found, blocks = self._gathered(), []
-        for plan, numbers in found[:-1]:
-            block = self._done(plan, numbers)
-            if block is None:
-                break
-            blocks.append(block)
-        return blocks
+        plans, numbers = self._gathered()
+        templates, given, shown, at = list[str](), list[str](), 0, 0
+        ends = _Ends(self.pole, self.place)
+        for plan in plans[:-1]:
+            if plan.code in CIRCLES:
+                about = ends.about()
+                if not about:
+                    break
+                given += (*numbers[shown : at + plan.behind], *about)
+                shown = at + plan.behind
+            bare = not plan.code or (plan.code == self.motion and plan.code not in CIRCLES)
+            templates.append(plan.text if bare else self._begun(plan))
+            ends.take(plan, numbers, at)
+            at += plan.count
+        if not templates:
+            return []
+        self._take_ends(ends)
+        given += numbers[shown:at]
+        return plain(("\n".join(templates) % (*given,)).replace("+", "")).split("\n")
 
-    def _done(self, plan: Plan, numbers: Sequence[str]) -> str | None:
-        """Return the block of a line; None where it hangs on more than the plan says."""
-        ends = {axis: plain(numbers[k]) for k, axis in enumerate(plan.axes, plan.first)}
-        place = self.place
-        if not plan.code:
-            self.pole, self.polar = ends, None
-            return ""
-        about = plan.code in CIRCLES
-        if (plan.off and self.side) or (
-            about and not (self.pole.keys() == ends.keys() <= place.keys())
-        ):
-            return None
-        words = "".join([f" {axis}{number}" for axis, number in ends.items()])
-        if about:
-            words += "".join(
-                [
-                    f" {letter}{exact(Decimal(self.pole[axis]) - Decimal(place[axis]))}"
-                    for axis, letter in CIRCLES_AT
-                ]
-            )
-        if plan.feed:
-            words += self.feed_word(plain(numbers[-1]))
-        place.update(ends)
-        self.moved.update(ends)
-        if "X" in ends or "Y" in ends:
+    def _begun(self, plan: Plan) -> str:
+        """Return the block of a line, to be filled in with its numbers, and take its codes."""
+        plane = self.in_plane("G17") if plan.code in CIRCLES else ""
+        codes = f"{plane}{self.moving(plan.code)}".rstrip()
+        return f"{codes} {plan.text}".lstrip()
+
+    def _take_ends(self, ends: _Ends) -> None:
+        """Take note of where lines have led, and how fast, and of the pole of the last CC."""
+        if ends.pole is not self.pole or not ends.led.keys().isdisjoint("XY"):
             self.polar = None
-        code = (
-            f"{self.in_plane('G17')}{self.moving(plan.code)}" if about else self.moving(plan.code)
-        )
-        return f"{code.rstrip()}{words}".lstrip()
+        if ends.pole is not self.pole:
+            self.pole = {axis: plain(number) for axis, number in ends.pole.items()}
+        self.place |= {axis: plain(number) for axis, number in ends.led.items()}
+        self.moved |= ends.led.keys()
+        if ends.feed:
+            self.feed_word(plain(ends.feed))
 
-    def _gathered(self) -> list[Line]:
-        """Return the lines of a run, with their numbers; the last of them moves."""
-        found: list[Line] = []
-        for line in range(self.line, len(self.lines)):
-            try:
+    def _gathered(self) -> tuple[list[Plan], list[str]]:
+        """Return the plans of a run of lines, and all their numbers; the last line moves."""
+        plans, numbers, line = list[Plan](), list[str](), self.line
+        with suppress(gx.InputError):  # a line is refused when it is come to
+            while line < len(self.lines):
+                ahead, k = self._split_ahead(line)
+                known = [*self._known_plans(line, ahead.keys[k:])]
+                plans += known
+                numbers += ahead.numbers[ahead.starts[k] : ahead.starts[k + len(known)]]
+                line += len(known)
+                if k + len(known) < len(ahead.keys):
+                    break
+        del plans[self._said_in_full(plans, numbers) :]
+        while plans and not plans[-1].code:
+            plans.pop()
+        return plans, numbers
+
+    def _known_plans(self, first: int, keys: Sequence[str]) -> Iterator[Plan]:
+        """Yield the plans of lines up to the first without one."""
+        for line, key in enumerate(keys, first):
+            plan = self._plans.get(key)
+            if plan is None:
                 shape, numbers = self.shape(line)
-            except gx.InputError:
-                break  # it is refused when it is come to
-            plan = self._plans.get(shape)
-            if plan is None and shape.routine:
-                plan = self._plans[shape] = _plan(shape.items(numbers))
-            if plan is None or max(map(len, numbers)) > LONGEST:
-                break
-            if plan.off and numbers[plan.first + len(plan.axes)] != "0":
-                break
-            found.append((plan, numbers))
-        while found and not found[-1][0].code:
-            found.pop()
-        return found
+                if not shape.routine:
+                    return
+                plan = self._plans[key] = _plan(shape.items(numbers))
+            yield plan
+
+    def _said_in_full(self, plans: Sequence[Plan], numbers: Sequence[str]) -> int:
+        """Return how many lines there are before one of which the plan does not say all."""
+        at, long = 0, max(map(len, numbers), default=0) > LONGEST
+        for k, plan in enumerate(plans):
+            if plan.off and (self.side or numbers[at + plan.behind] != "0"):
+                return k
+            if plan.feed and self.inch:
+                return k
+            if long and max(map(len, numbers[at : at + plan.count])) > LONGEST:
+                return k
+            at += plan.count
+        return len(plans)
 
     def _hangs_on_more(self, rapid: bool) -> bool:
         """Whether lines are translated by more than what they say."""
@@ -208,7 +256,12 @@ def _plan(items: Sequence[gx.Item]) -> Plan:
     elif said[0].name == "C":
         code = SENSES[next(item.name for item in said if item.kind == "dr")]
     axes = tuple(item.name for item in said if item.kind == "axis")
-    return Plan(code, axes, len(items) - len(said), "feed" in kinds, "radius" in kinds)
+    first, feed, off = len(items) - len(said), "feed" in kinds, "radius" in kinds
+    letters = (*axes, *("IJ" if code in CIRCLES else ""))
+    words = " ".join(f"{letter}%s" for letter in letters) + NOT_SHOWN * off + " F%s" * feed
+    text = NOT_SHOWN * first + (words if code else NOT_SHOWN * len(axes))
+    behind = first + len(axes)
+    return Plan(code, axes, first, behind, feed, off, behind + off + feed, text)
 
 
 def _word(item: gx.Item) -> str:
