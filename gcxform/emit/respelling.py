@@ -37,8 +37,11 @@ def counting_lines(translator: Translator) -> frozenset[int]:
     if translator.stepped is None:
         return frozenset(k for k, line in enumerate(lines) if translator.counts(line))
     text = translator.uncommented("\n".join(lines))
+    places = [match.end() for match in translator.stepped.finditer(text)]
+    if not places:
+        return frozenset()
     ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
-    found = {bisect_left(ends, match.end()) for match in translator.stepped.finditer(text)}
+    found = {bisect_left(ends, place) for place in places}
     return frozenset(line for line in found if translator.counts(lines[line]))
 
 

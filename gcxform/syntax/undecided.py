@@ -74,10 +74,13 @@ class Undecided:
         """
         if not self and self.alarm is None:
             return self
+        there, nth = np.unique(source, return_index=True)
+        named = {*self.lines, *self.labels, *self.perhaps}
+        if self.alarm is not None:
+            named.add(self.alarm)
         at: dict[int, list[int]] = {}
-        for k, line in enumerate(source.tolist()):
-            at.setdefault(line, []).append(first + k)
-        there = sorted(at)
+        for k in np.flatnonzero(np.isin(source, [*named])).tolist() if named else ():
+            at.setdefault(int(source[k]), []).append(first + k)
 
         def written(lines: frozenset[int]) -> frozenset[int]:
             return frozenset(at[line][0] for line in lines if line in at)
@@ -85,9 +88,8 @@ class Undecided:
         def before(lines: Iterable[int]) -> Iterator[tuple[int, int]]:
             """Yield lines, and which of the text they are before."""
             for line in lines:
-                k = bisect_left(there, line)
-                if line in window and k < len(there):
-                    yield line, at[there[k]][0]
+                if line in window and (k := bisect_left(there, line)) < len(there):
+                    yield line, first + int(nth[k])
 
         lost: dict[int, str] = {}
         forgets: dict[int, frozenset[int | str]] = {}

@@ -539,7 +539,7 @@ MUTATIONS = (
     Mutation(
         "siemens: the direction of lines before CT is not looked at",
         CONTOURS,
-        "        self.has_tangents = self.has_tangents or any(map(TANGENT.search, lines))\n",
+        '        self.has_tangents |= "CT" in text.upper() and TANGENT.search(text) is not None\n',
         "        pass\n",
         f"{CASES}[dialects/siemens/tangential-behind-plain-lines]",
     ),

@@ -35,6 +35,8 @@ CALL = re.compile(r"(LL|L|#CALL|#PCALL)[ \t]+\[?(.*?)\]?", re.IGNORECASE | re.DO
 FLOWS = re.compile(
     r"^[/N0-9:\[\]A-Z_ \t]*(?:\$|#P?CALL|#RET|LL?[ \t]+[^0-9 \t\n])", re.IGNORECASE | re.MULTILINE
 )
+FLOW_LETTERS = frozenset("$#L")
+"""One of these is in what `FLOWS` finds."""
 END_OPEN = 'say for-end = "included" in [control], or for-end = "excluded" in [control]'
 
 
@@ -64,7 +66,9 @@ class Flow(Computing):
         self.local, self.at, self.wrong = self._sections()
         self.begin = self.at
         self._text = code("\n".join(self.lines))
-        self.decides = bool(self.local) or FLOWS.search(self._text) is not None
+        self.letters = frozenset(self._text.upper())
+        may = not self.letters.isdisjoint(FLOW_LETTERS)
+        self.decides = bool(self.local) or (may and FLOWS.search(self._text) is not None)
         self.plainly = not self.decides
         self.does: Mapping[str, Callable[[Any], None]] = {
             "if": self._if,

@@ -22,7 +22,7 @@ from gcxform_plugins.dialects.fagor.spelling import COUNTS, HEAD, STEPPED, spell
 from gcxform_plugins.dialects.fagor.structure import StructureError, code
 from gcxform_plugins.dialects.shared.untouched_lines import KEEPABLE, KEEPS, KEPT
 
-HANGS = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:8|36|37|38|39)(?![0-9.])", re.IGNORECASE)
+HANGS = re.compile(r"[Gg](?<![A-Za-z0-9_.][Gg])[ \t]*0*(?:8|36|37|38|39)(?![0-9.])")
 """Codes that take the direction of the move before them, or change the moves beside them."""
 BEHIND = re.compile(r"(?<![A-Z0-9_.])G[ \t]*0*(?:36|37|38|39)(?![0-9.])", re.IGNORECASE)
 MODAL = re.compile(
@@ -102,7 +102,7 @@ class Programs(Flow):
         self.ran: set[int] = set()
         self.frozen: set[int] = set()
         self.gone: set[str] = set()
-        self.named = tables.AXES & set(self._text.upper())
+        self.named = tables.AXES & self.letters
         self.hangs = HANGS.search(self._text) is not None
         self.plainly = self.plainly and not (self.reading.stays and self.hangs)
 

@@ -115,7 +115,7 @@ def sections(lines: Sequence[str]) -> tuple[dict[str, range], int]:
 
     Subroutines stand before the program (8070, Ref. 1709, p. 32); without any it begins at 0.
     """
-    heads = [(k, m) for k, text in enumerate(lines) if (m := HEADER.match(text))]
+    heads = [(k, m) for k, text in enumerate(lines) if "%" in text and (m := HEADER.match(text))]
     if not heads or any(code(lines[k]).strip() for k in range(heads[0][0])):
         return {}, 0
     found: dict[str, range] = {}

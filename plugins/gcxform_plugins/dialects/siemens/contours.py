@@ -73,7 +73,8 @@ class Contours(Angles):
 
     def look_for_tangents(self, lines: Iterable[str]) -> None:
         """Note whether lines have CT, which hangs on the line before it."""
-        self.has_tangents = self.has_tangents or any(map(TANGENT.search, lines))
+        text = "\n".join(lines)
+        self.has_tangents |= "CT" in text.upper() and TANGENT.search(text) is not None
 
     def take_corner(self, line: Line) -> None:
         """Take what a line says of corners. Raises InputError where it leads to none."""
