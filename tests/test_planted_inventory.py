@@ -89,6 +89,7 @@ G0 Z9.
 M30
 """
 SLASH = b"O1\nG21 G90 G94\nG0 X0. Y0. Z5.\n/M8\nM1\n/G4 P100\nX5.\nM30\n"
+WITHIN = b"O1\nG21 G90 G94\nG0 X0. Y0. Z5. /M8\nX5. /M9\nM30\n"
 PROBE = b"G21 G90 G94\nG91 G38.2 Z-20 F50\nG90 G0 Z5\nM2\n"
 GRBL = b"G21 G90 G94\nG0 X1\nG1 X2 F100\n"
 
@@ -205,6 +206,8 @@ FAULTS = {
     "a loop has no end": (WAITS, rewrites(b"END1\n", b"")),
     "what is needed is left out": (WAITS, rewrites(b"#1=3.\n", b"")),
     "a slash is lost": (SLASH, rewrites(b"/M8", b"M8")),
+    "a slash within a block is lost": (WITHIN, rewrites(b" /M8", b" M8")),
+    "what a slash within a block has behind it is lost": (WITHIN, rewrites(b" /M9", b"")),
     "a slash is lost before a dwell": (SLASH, rewrites(b"/G4", b"G4")),
     "a block gets a slash": (SLASH, rewrites(b"M1", b"/M1")),
     "a probe from nowhere known goes further": (PROBE, rewrites(b"Z-20", b"Z-25")),
@@ -220,9 +223,8 @@ FAULTS = {
 def test_the_proof_of_a_run_catches(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     program, plant = FAULTS[name]
     fanuc = "fanuc", "fanuc"
-    kinds = {MACRO: fanuc, LOST: fanuc, WAITS: fanuc, SLASH: fanuc, GRBL: ("grbl", "linuxcnc")}.get(
-        program, ("linuxcnc",) * 2
-    )
+    macros = dict.fromkeys((MACRO, LOST, WAITS, SLASH, WITHIN), fanuc)
+    kinds = {**macros, GRBL: ("grbl", "linuxcnc")}.get(program, ("linuxcnc",) * 2)
     assert run(program, *kinds).certificate.verified
     plant(monkeypatch)
     with pytest.raises((gx.VerificationError, gx.InputError)):

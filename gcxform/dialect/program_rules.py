@@ -22,6 +22,7 @@ class ProgramRule:
     spindle_stands     the spindle stands still, as far as the control knows, when a program starts
     unit_is_set        a setting of the control decides in which unit a program begins
     block_delete       what is done with `/` blocks: "execute", "skip", or "": a switch decides
+    asides             a slash within a block: the switch decides on the M codes behind it alone
     needs_end          a file without M2 or M30, and not between two percent signs, is refused
     stops_at_end       M2 and M30 stop the control
     resets_at_end      where they do not: the modes they leave behind
@@ -36,6 +37,7 @@ class ProgramRule:
     spindle_stands: bool = False
     unit_is_set: bool = False
     block_delete: str = ""
+    asides: bool = False
     needs_end: bool = False
     stops_at_end: bool = True
     resets_at_end: Mapping[str, str] = field(default_factory=dict)

@@ -18,11 +18,12 @@ from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, s
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
 from gcxform.emit.own_blocks import apart, m_codes_of
+from gcxform.modal.meaning.asides import OWN_BLOCK, codes_in
 from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
 from gcxform.modal.meaning.tables import CYCLES
 from gcxform.syntax.shapes import Shape
-from gcxform.syntax.tree import CODES, Number, Word
+from gcxform.syntax.tree import CODES, Mark, Number, Word
 
 WAY_HOME: Final = (
     "write the point on the way, if there is one, in a block of its own before; G91 G28 Z0 and the "
@@ -157,6 +158,20 @@ class CodeWords:
             ):
                 return  # it has a block of its own
         after = code is not None and code.after
+        whole = self.key.role is Role.ONLY or self.key.as_it_stands
+        if whole or self.key.role is (Role.LAST if after else Role.FIRST):
+            self.draft.literal(self.draft.gap_before(lead), text)
+
+    def aside(self, item: Mark, lead: bytes) -> None:
+        """Write M codes behind a slash, with it, in the piece in which they act."""
+        text = self.draft.said(item.start, item.end)
+        for number, *_ in codes_in(text):
+            one, other = m_codes_of(self.manner, number)
+            said = self.saying.instead(f"M{number}") != f"M{number}"
+            crosses = self.source is not self.target and not self.target.program_rule.asides
+            if said or crosses or one is None or other is None or not same_m(one, other, set()):
+                self.draft.refuse(item, "codes behind a slash within a block", OWN_BLOCK)
+        after = any(event.after for event in self.meaning.events if event.aside)
         whole = self.key.role is Role.ONLY or self.key.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):
             self.draft.literal(self.draft.gap_before(lead), text)

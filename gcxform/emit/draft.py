@@ -6,12 +6,15 @@ wrote the word before.
 
 from __future__ import annotations
 
+import re
 from typing import NoReturn
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.expressible import CannotSayError
 from gcxform.emit.fields import Field, Literal
 from gcxform.syntax.tree import Item
+
+SLASH = re.compile(rb"/[0-9]?")
 
 
 class Draft:
@@ -34,8 +37,12 @@ class Draft:
         return text if self.target.text_rule.lower_case else text.upper()
 
     def gap_before(self, lead: bytes) -> bytes:
-        """Return what stands before a word: its own `lead`, or the usual gap, if words precede."""
-        return lead or (self.gap if self.fields else b"")
+        """Return what stands before a word: its own `lead`, or the usual gap, if words precede.
+
+        A slash is no word: what follows it stands as near as it stood.
+        """
+        words = [f for f in self.fields if not (isinstance(f, Literal) and SLASH.fullmatch(f.text))]
+        return lead or (self.gap if words else b"")
 
     def ends_in_word(self) -> bool:
         """Whether something other than blanks has been written."""

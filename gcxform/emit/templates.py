@@ -43,6 +43,7 @@ from gcxform.emit.fields import (
     Wait,
 )
 from gcxform.emit.manner import Manner
+from gcxform.modal.meaning.asides import ASIDE
 from gcxform.modal.meaning.meaning import DRILL_WORDS, Meaning
 from gcxform.modal.meaning.printed import is_output
 from gcxform.modal.meaning.sorting import program_number_fits
@@ -217,6 +218,10 @@ class TemplateWriter:
         return comment_for(self.source, self.target, text)
 
     def _mark(self, item: Mark, lead: bytes) -> None:
+        if item.kind == ASIDE:
+            self._rest()
+            self.codes.aside(item, lead)
+            return
         if item.kind == "block_delete":
             if not self.manner.slashes:
                 return

@@ -31,12 +31,15 @@ def events_of(
     begin, end = np.searchsorted(rows, having), np.searchsorted(rows, having, "right")
     columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
     meanings, first_line = lines.table.meanings, lines.window.first_line
-    open_ = not lines.reading.blocks_with_a_slash(lines.dialect)
+    slash = lines.reading.blocks_with_a_slash(lines.dialect)
     for line, number, first, first_row, last_row in zip(*columns, strict=True):
         for shape in meanings[number].events:
+            if shape.aside and slash == "skip":
+                continue
             values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
             where = last_row if shape.after else first_row
-            what = SWITCHED + shape.what if open_ and meanings[number].deleted else shape.what
+            switched = not slash and (meanings[number].deleted or shape.aside)
+            what = SWITCHED + shape.what if switched else shape.what
             events.append(Event(where, what, values, line + first_line))
             after.append(shape.after)
     if not within and not lines.unknown:

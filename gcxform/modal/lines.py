@@ -155,19 +155,18 @@ class Lines:
 
     def _deleted_blocks(self) -> None:
         """Execute or silence blocks with a slash, or refuse them."""
-        deleted = np.flatnonzero(self.flag("deleted"))
+        deleted, asides = np.flatnonzero(self.flag("deleted")), np.flatnonzero(self.flag("asides"))
         policy = self.reading.blocks_with_a_slash(self.dialect)
-        if len(deleted) and self.reading.block_delete:
+        if len(deleted) + len(asides) and self.reading.block_delete:
             done = {"execute": "executed", "skip": "skipped"}[self.reading.block_delete]
             self.state.assumed[f"blocks with a slash are {done}"] = None
-        if not len(deleted) or policy == "execute":
-            return
         if policy == "skip":
             self.shape = self.shape.copy()
             self.shape[deleted] = NOTHING
-            return
-        for line in deleted.tolist():
-            if self.table.meanings[int(self.shape[line])].switches and not self.reading.crosses:
+        for line in () if policy else sorted({*deleted.tolist(), *asides.tolist()}):
+            meaning = self.table.meanings[int(self.shape[line])]
+            still = meaning.switches or not meaning.deleted  # no other block hangs on it
+            if still and not self.reading.crosses:
                 continue  # it stays, and so does the question
             self.findings.add(
                 line,

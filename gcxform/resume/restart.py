@@ -88,7 +88,8 @@ class Restart:
         for number, first in shapes_seen(found.shape):
             at = window.first_line + first + 1
             self.memory.look(shapes[number], meanings[number], at)
-            if meanings[number].deleted and not self.reading.blocks_with_a_slash(self.dialect):
+            open_ = meanings[number].deleted or meanings[number].asides
+            if open_ and not self.reading.blocks_with_a_slash(self.dialect):
                 self.memory.refuse(at, "a switch decides whether a block before is executed")
             self.placed.update(meanings[number].axes)
         grammar = self.dialect.load_grammar()

@@ -33,7 +33,7 @@ ABOVE = 3  # levels of a tree above the first of an expression: start, word
 MARKS = frozenset(
     {
         *("block_delete", "block_end", "percent", "program_id", "program_name", "filler", "label"),
-        *("output", "title"),
+        *("output", "title", "aside"),
     }
 )
 

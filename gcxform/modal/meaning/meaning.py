@@ -29,13 +29,15 @@ class Refusal:
 class EventShape:
     """An event of every block of a shape: its name, and the slots of the words it takes.
 
-    `order` sorts the events of a block; `after`: it happens after the block's motion.
+    `order` sorts the events of a block; `after`: it happens after the block's motion; `aside`: it
+    stands behind a slash within the block, so that a switch of the control decides on it alone.
     """
 
     order: int
     what: str
     slots: tuple[tuple[str, int], ...] = ()
     after: bool = False
+    aside: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,6 +181,11 @@ class Meaning:
     def switches(self) -> bool:
         """Whether no other block hangs on whether the block is executed."""
         return self.is_still and not (self.assignments or self.expressions or self.prints)
+
+    @property
+    def asides(self) -> bool:
+        """Whether a slash within the block leaves codes behind it to a switch of the control."""
+        return any(event.aside for event in self.events)
 
     @property
     def compensates(self) -> bool:

@@ -10,6 +10,7 @@ from collections.abc import Container, Iterator
 
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.dialect import LINEAR, Dialect
+from gcxform.modal.meaning.asides import ASIDE, read_aside
 from gcxform.modal.meaning.calls import ELSEWHERE, calling, not_there, read_call
 from gcxform.modal.meaning.choices import choices_of
 from gcxform.modal.meaning.lathe import lathe_signs
@@ -113,6 +114,8 @@ def _mark(item: Mark, shape: Shape, dialect: type[Dialect], meaning: Meaning) ->
     if item.kind == "program_name" and not stands_alone(item, shape):
         size = item.end - item.start
         yield Refusal("GX203", item.start, size, "a name of a program stands by itself")
+    if item.kind == ASIDE:
+        yield from read_aside(item, shape, dialect, meaning)
     if is_output(item):
         yield from read_output(item, shape.block, dialect, meaning)
 

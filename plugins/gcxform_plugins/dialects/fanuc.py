@@ -8,6 +8,7 @@
 | motion at start | parameter 3402: taken as unknown, so the first move needs its code |
 | units, distance mode at start | parameters: taken as G21 G90, and the certificate says so |
 | units of a program for a TNC | must be stated: its first line says MM or INCH |
+| `Z5. /M8` | coolant a switch decides on, as posts for Fanucs write it; else refused |
 | two codes of a group | the last is taken |
 | arc centre | incremental only; no centre at all: refused (parameter 3403 decides what is cut) |
 | R together with I J K | refused |
@@ -197,7 +198,7 @@ class Fanuc(gx.Dialect):
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
-    program_rule = gx.ProgramRule(has_title=True, unit_is_set=True)
+    program_rule = gx.ProgramRule(has_title=True, unit_is_set=True, asides=True)
     text_rule = gx.TextRule(lower_case=False, acts_anywhere="%")
     block_rule = gx.BlockRule(
         last_code_wins=True,

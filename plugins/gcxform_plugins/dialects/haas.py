@@ -1,8 +1,8 @@
 """Haas NGC, milling: the language of Fanuc with settings in the place of parameters.
 
 Nothing here was executed on a Haas. *Manual* is what Haas prints in its manuals and on its help
-pages; *known* is common knowledge that nobody checked, so that what hangs on it is an option or
-refused. What is not named here is as in `fanuc`.
+pages, *course* in its courses for programmers; *known* is common knowledge that nobody checked, so
+that what hangs on it is an option or refused. What is not named here is as in `fanuc`.
 
 | what | Haas | known from |
 |---|---|---|
@@ -14,6 +14,7 @@ refused. What is not named here is as in `fanuc`.
 | small letters | are read as capitals | known |
 | program number | O and five digits at most | manual |
 | block | 256 characters | known |
+| `Z5. /M8` | the switch decides on what is behind the slash: coolant, else refused | course |
 | two codes of a group | as Fanuc: the last is taken | known |
 | start and end radius | 0.001 inch is said of alarm 303: taken as 0.01 mm | known |
 | M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |

@@ -42,9 +42,9 @@ HURCO_GONE = ("G54.1", "G54.2", "G54.4", "G5", "G5.1", "G8")
 SPACE = "it cuts an arc in space"
 BY_H = "posts for it call by H"
 
-UNTITLED = replace(Fanuc.program_rule, has_title=False)
 NO_PLANES = replace(Fanuc.tip_rule, planes={})
 """Which of two attitudes the others take is not known."""
+UNTITLED = replace(Fanuc.program_rule, has_title=False, asides=False)
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
 
 
