@@ -11,6 +11,22 @@ STEPS = "tests/test_blind_moves.py"
 
 FAULTS = (
     (
+        "pecks of a Haas by I, J and K are refused where their block stays",
+        "gcxform/modal/cycles/checks.py",
+        "letter) & ~self._stays()",
+        "letter)",
+        f"{CASE}[dialects/haas/pecks-by-ijk]",
+    ),
+    (
+        "pecks of a Haas by I, J and K are written as one",
+        "gcxform/modal/cycles/checks.py",
+        """        if not self.open_pecks:
+            return np.zeros(len(self.calls), np.bool_)
+        return self._with_code([code for""",
+        "        return self._with_code([code for",
+        f"{CASE}[dialects/haas/pecks-by-ijk-expanded]",
+    ),
+    (
         "a G53 under G1 of a Haas is refused",
         "plugins/gcxform_plugins/dialects/haas.py",
         "g53_is_rapid=False",

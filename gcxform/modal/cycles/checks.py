@@ -124,15 +124,25 @@ class Checks:
                 yield given & ~self._listed(lambda one: one.takes, letter), *_takes_no(letter)
             unset = np.isnan(self.words[name])
             open_ = f"{{code}} with {letter} in force: what it does is not known"
-            left_open = self._listed(lambda one: one.open_words, letter)
-            yield ~unset & left_open, open_, "write G80 before it"
+            left_open = self._listed(lambda one: one.open_words, letter) & ~self._stays()
+            by_q = "peck by Q alone" if letter in "IJK" else "write G80 before it"
+            yield ~unset & left_open, open_, by_q
             missing = self.drilled & unset & self._listed(lambda one: one.needs, letter)
+            if letter == "Q":  # some controls peck by I, J and K as well
+                others = self._listed(lambda one: one.open_words, "I")
+                missing &= np.isnan(self.words["i"]) | ~others
             missing &= not (letter == "P" and rule.keeps_words and self.open_pecks)
             yield missing, f"{{code}} without {letter}", "give it in this block"
         yield calls.p < 0, "{code} with a negative P", ""
         pecks = self._with_code([code for code, one in self.cycles.items() if one.pecks])
         pecks &= self.drilled & (self.words["q"] <= 0)
         yield pecks, "{code} with a Q that is not above zero", ""
+
+    def _stays(self) -> Flags:
+        """Return the calls whose pecks may be of any kind: their blocks stay as they are."""
+        if not self.open_pecks:
+            return np.zeros(len(self.calls), np.bool_)
+        return self._with_code([code for code, one in self.cycles.items() if one.pecks])
 
     def _about_levels(self) -> Iterator[tuple[Flags, str, str]]:
         calls, drilled, stretch = self.calls, self.drilled, self.stretch

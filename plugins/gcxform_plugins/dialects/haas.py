@@ -25,7 +25,8 @@ that what hangs on it is an option or refused. What is not named here is as in `
 | a tool length behind G28 | cancelled, or not: it says both, so that it is not known | manual |
 | G53 | goes in G0 or in G1, whichever is in force | manual |
 | G52, G92 | Setting 33: refused unless `[control] g52 = "fanuc"` says that it is FANUC | manual |
-| canned cycles | L counts the holes, L0 stores; I, J, K, and P of G73, G83: refused | known |
+| canned cycles | L counts the holes, L0 stores | known |
+| G73 G83 by I, J, K, or with P | stay as they are, to the same control; else refused | manual |
 | a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
 | G12 G13, G47 | pockets and engraving in their block: kept, places are lost behind it | manual |
 | G150, drilling | cycles: refused by name | manual |
@@ -69,7 +70,7 @@ NOT_HERE = frozenset((
 NOT_HERE_M = frozenset((29, 48, 49))
 MORE_OFFSETS = tuple(f"G{number}" for number in range(110, 130) if number not in (112, 113))
 CYCLES = {number: replace(one, takes="PQL") for number, one in Fanuc.cycle_rule.cycles.items()}
-CYCLES |= {number: replace(CYCLES[number], takes="QL", open_words="P") for number in (73, 83)}
+CYCLES |= {n: replace(CYCLES[n], takes="PQIJKL", open_words="PIJK") for n in (73, 83)}
 OWN = v.MACRO_B.machine
 ARITHMETIC = replace(
     v.with_logic(v.MACRO_B, bits=True),
