@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from random import Random
+from time import process_time
 
 import pytest
 from gcxform_plugins.dialects.heidenhain.runs import Runs
@@ -133,3 +134,24 @@ def test_a_run_of_lines_ends_where_they_lead():
     found = result(text, False)
     assert isinstance(found, tuple), found
     assert found[0].endswith(b"X9\nY4\nM2\n")
+
+
+def test_a_run_that_is_repeated_ends_where_it_ended(monkeypatch):
+    run, other = [f"L X+{k}" for k in range(5)], [f"L Y+{k}" for k in range(6)]
+    lines = ["L F9", "LBL 1", *run, "STOP", *other, "CALL LBL 1 REP 2"]
+    text = "".join(f"{line}\n" for line in ("BEGIN PGM A MM", *lines, "M2"))
+    at_once = result(text, False)
+    monkeypatch.setattr(Runs, "several", lambda self: [])
+    assert at_once == result(text, False)
+
+
+@pytest.mark.parametrize("line", ["L X+{} F200", "CC X+{} Y+0\nC X+{} Y+0 DR+ F200"])
+def test_what_ends_a_run_is_not_looked_for_again_in_every_line(line):
+    """Eight times the lines of a program in inches with F in each take some eight times as long."""
+    taken = []
+    for count in (1_000, 1_000, 8_000):
+        lines = "".join(line.replace("{}", str(k % 97)) + "\n" for k in range(count))
+        began = process_time()
+        result(f"BEGIN PGM A INCH\nL X+1 Y+1 F9\n{lines}END PGM A INCH\n", False)
+        taken.append(process_time() - began)
+    assert taken[2] < 24 * taken[1]

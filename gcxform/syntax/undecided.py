@@ -75,9 +75,8 @@ class Undecided:
         if not self and self.alarm is None:
             return self
         there, nth = np.unique(source, return_index=True)
-        named = {*self.lines, *self.labels, *self.perhaps}
-        if self.alarm is not None:
-            named.add(self.alarm)
+        alarm = () if self.alarm is None else (self.alarm,)
+        named = {*self.lines, *self.labels, *self.perhaps, *alarm}
         at: dict[int, list[int]] = {}
         for k in np.flatnonzero(np.isin(source, [*named])).tolist() if named else ():
             at.setdefault(int(source[k]), []).append(first + k)

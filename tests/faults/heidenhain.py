@@ -831,16 +831,30 @@ MUTATIONS = (
     Mutation(
         "klartext: feeds of runs in inches are of mm",
         RUNS,
-        '" F" in text and not rapid and self.inch',
-        "False",
+        '(" F", self.inch and not rapid)',
+        '(" F", False)',
         "tests/test_klartext_runs.py::test_runs_are_their_lines",
     ),
     Mutation(
         "klartext: runs leave the contour by R0 in no time",
         RUNS,
-        '" R" in text and self.side',
-        "False",
+        '(" R", self.side)',
+        '(" R", False)',
         "tests/test_klartext_runs.py::test_a_run_with_r0_leaves_the_contour",
+    ),
+    Mutation(
+        "klartext: a run that is repeated ends where the last one did",
+        RUNS,
+        "if not begun <= at < end:",
+        "if not at < end:",
+        "tests/test_klartext_runs.py::test_a_run_that_is_repeated_ends_where_it_ended",
+    ),
+    Mutation(
+        "klartext: a run is looked through again for every line of it",
+        RUNS,
+        "            self._spans[rapid] = at, end\n",
+        "            pass\n",
+        "tests/test_klartext_runs.py::test_what_ends_a_run_is_not_looked_for_again_in_every_line",
     ),
     Mutation(
         "klartext: circles in runs turn about another place",
@@ -852,8 +866,8 @@ MUTATIONS = (
     Mutation(
         "klartext: feeds of lines and circles in inches are of mm",
         RUNS,
-        "if plan.feed and self.inch:",
-        "if not plan:",
+        "if (plan.feed and self.inch) or (plan.off and self.side):",
+        "if plan.off and self.side:",
         "tests/test_klartext_runs.py::test_runs_are_their_lines",
     ),
     Mutation(
@@ -866,8 +880,8 @@ MUTATIONS = (
     Mutation(
         "klartext: R of a line in a run is R0 whatever it says",
         RUNS,
-        'if plan.off and (self.side or numbers[at + plan.behind] != "0"):',
-        "if plan.off and self.side:",
+        'if plan.off and numbers[at + plan.behind] != "0":',
+        "if not plan:",
         "tests/test_klartext_runs.py::test_r_of_a_line_is_r0_where_it_says_so",
     ),
     Mutation(

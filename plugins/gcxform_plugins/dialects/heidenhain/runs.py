@@ -88,6 +88,7 @@ class Runs(Klartext):
         self._plans: dict[str, Plan] = {}
         self._known: dict[bool, dict[str, None]] = {True: {}, False: {}}
         self._runs: dict[bool, re.Pattern[str]] = {}
+        self._spans = {True: (0, 0), False: (0, 0)}
         self._text, self._starts = "", [0]
 
     def routine(self, items: Sequence[gx.Item], text: str) -> bool:
@@ -126,19 +127,30 @@ class Runs(Klartext):
         if len(self._starts) != len(self.lines) + 1:
             self._text = "".join(f"{line}\n" for line in self.lines)
             self._starts = [0, *accumulate(len(line) + 1 for line in self.lines)]
-        pattern, at = self._runs.get(rapid), self._starts[self.line]
-        found = pattern and pattern.match(self._text, at)
-        if not found or found[0].count("\n") <= LEAST:
+        at = self._starts[self.line]
+        end = self._end_of_run(rapid, at)
+        for word, hangs in ((" F", self.inch and not rapid), (" R", self.side)):
+            if hangs and (place := self._text.find(word, at, end)) >= 0:
+                end = max(self._text.rfind("\n", at, place) + 1, at)
+        if self._text.count("\n", at, end) <= LEAST:
             return []
-        text = found[0][: found[0].rindex("\n", 0, -1)]
-        if " F" in text and not rapid and self.inch:
-            return []
-        if " R" in text and self.side:
-            return []
-        blocks = LEFT_OUT.sub("", text)
+        blocks = LEFT_OUT.sub("", self._text[at : self._text.rindex("\n", at, end - 1)])
         code = self.moving("G0" if rapid else "G1")
         self._take(blocks)
         return f"{code}{' ' if code else ''}{blocks}".split("\n")
+
+    def _end_of_run(self, rapid: bool, at: int) -> int:
+        """Return where in the text a run ends that goes on at a place; the place if none does.
+
+        What is left of a run is one: who takes a line of it alone need not look through it again.
+        """
+        begun, end = self._spans[rapid]
+        if not begun <= at < end:
+            pattern = self._runs.get(rapid)
+            found = pattern and pattern.match(self._text, at)
+            end = found.end() if found else at
+            self._spans[rapid] = at, end
+        return end
 
     # --- lines and circles in turn ---
 
@@ -202,7 +214,7 @@ class Runs(Klartext):
         return plans, numbers
 
     def _known_plans(self, first: int, keys: Sequence[str]) -> Iterator[Plan]:
-        """Yield the plans of lines up to the first without one."""
+        """Yield the plans of lines up to the first without one, or that hangs on more."""
         for line, key in enumerate(keys, first):
             plan = self._plans.get(key)
             if plan is None:
@@ -210,15 +222,15 @@ class Runs(Klartext):
                 if not shape.routine:
                     return
                 plan = self._plans[key] = _plan(shape.items(numbers))
+            if (plan.feed and self.inch) or (plan.off and self.side):
+                return
             yield plan
 
     def _said_in_full(self, plans: Sequence[Plan], numbers: Sequence[str]) -> int:
         """Return how many lines there are before one of which the plan does not say all."""
         at, long = 0, max(map(len, numbers), default=0) > LONGEST
         for k, plan in enumerate(plans):
-            if plan.off and (self.side or numbers[at + plan.behind] != "0"):
-                return k
-            if plan.feed and self.inch:
+            if plan.off and numbers[at + plan.behind] != "0":
                 return k
             if long and max(map(len, numbers[at : at + plan.count])) > LONGEST:
                 return k
