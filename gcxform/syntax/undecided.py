@@ -75,8 +75,8 @@ class Undecided:
         if not self and self.alarm is None:
             return self
         there, nth = np.unique(source, return_index=True)
-        alarm = () if self.alarm is None else (self.alarm,)
-        named = {*self.lines, *self.labels, *self.perhaps, *alarm}
+        alarms = () if self.alarm is None else (self.alarm,)
+        named = {*self.lines, *self.labels, *self.perhaps, *alarms}
         at: dict[int, list[int]] = {}
         for k in np.flatnonzero(np.isin(source, [*named])).tolist() if named else ():
             at.setdefault(int(source[k]), []).append(first + k)
