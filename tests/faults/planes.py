@@ -92,6 +92,13 @@ MUTATIONS = (
         case("turns"),
     ),
     Mutation(
+        "planes: the words of a block that sets a length are no move in one",
+        LOOK,
+        "acts and self._acts(first, WORDED)",
+        "acts and not self.own[first]",
+        case("beside-a-length"),
+    ),
+    Mutation(
         "planes: an axis stands where it stood behind a code that may turn it",
         LOOK,
         "lost = np.flatnonzero(self.lost[first:last])",

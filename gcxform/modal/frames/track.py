@@ -168,7 +168,8 @@ class Track:
 
     def _stand(self, k: int, word: float) -> None:
         """Let an axis stand where a word of the frame in force leads, if that is known."""
-        if not isfinite(word) or self.frame.matrix is not None:
+        turned = self.frame.matrix is not None or self.state.frames.plane is not None
+        if turned or not isfinite(word):
             return
         words = list(self.frame.words_of(self.state.position.tolist()))
         words[k] = word

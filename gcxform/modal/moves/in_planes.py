@@ -6,14 +6,20 @@ the rotary axes stand still.
 
 from __future__ import annotations
 
+from collections.abc import Set
+
 import numpy as np
 
 from gcxform.modal.frames.planes import EQUAL
 from gcxform.modal.frames.track import Track
+from gcxform.modal.meaning.calls import CALL
+from gcxform.modal.meaning.meaning import OWN_MOVES, TAKES_MOTION
 from gcxform.modal.moves.rows import Stretches
 from gcxform.system.arrays import Flags, Ints
 
 ORIENT = "orient"
+WORDED = frozenset({CALL, *TAKES_MOTION} - OWN_MOVES | {ORIENT})
+"""Acts whose block moves by no words of axes: it has none, or they are theirs."""
 BY_TABLES = "tilted planes go with the table as its axes stand in the machine file"
 BETWEEN = "between the plane and the code that turns the tool onto it"
 TURN_FIRST = "write G53.1 before: only then words lead where the plane says"
@@ -45,16 +51,15 @@ class InPlanes:
     def check(self, first: int, last: int, acts: bool) -> None:
         """Refuse what a stretch may not do in the plane in force behind its first line.
 
-        `acts`: its first line acts on the frame, and words that are no move of its own are the
-        act's.
+        `acts`: its first line acts on the frame.
         """
         plane = self.track.state.frames.plane
         if plane is None:
             return
-        orients = acts and self._orients(first)
+        orients = acts and self._acts(first, {ORIENT})
         if orients:
             self.track.state.assumed[BY_TABLES] = None
-        behind = first + (acts and (orients or not self.own[first]))
+        behind = first + (acts and self._acts(first, WORDED))
         moving = np.flatnonzero((self.track.worded | self.own)[behind:last]) + behind
         turning = moving[self._turn(moving)]
         if not plane.angles:
@@ -64,10 +69,10 @@ class InPlanes:
         elif not orients:
             self._refuse(moving[moving >= self._lost_from(first, last)], LOST, INERT)
 
-    def _orients(self, line: int) -> bool:
+    def _acts(self, line: int, names: Set[str]) -> bool:
         lines = self.track.lines
         acts = lines.table.meanings[int(lines.shape[line])].acts
-        return any(act.name == ORIENT for act in acts)
+        return any(act.name in names for act in acts)
 
     def _turn(self, lines: Ints) -> Flags:
         """Return which lines name a rotary axis of the table."""
