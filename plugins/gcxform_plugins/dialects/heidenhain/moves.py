@@ -128,6 +128,8 @@ class Moves(Saying):
 
     def _check_turning(self, said: Said, ends: dict[str, str]) -> None:
         """Refuse turns of which it is not certain how far they go, or how fast."""
+        if any(Decimal(ends[axis]) for axis in ROTARY if axis in ends):
+            self._check_untilted()
         if self.shortest:
             for axis in ROTARY:
                 before, after = self.place.get(axis), ends.get(axis)
@@ -143,6 +145,12 @@ class Moves(Saying):
         if self.inch and alone and not said.rapid:
             self.refuse("a feed in degrees in a program in inches", None)
 
+    def _check_untilted(self) -> None:
+        """Refuse to turn an axis out of 0 in a plane, which words behind it would be led into."""
+        if self.untilted and not (self.following or self.reading.stays):
+            message = "a rotary axis turns under PLANE SPATIAL, which words then allow for"
+            self.refuse(message, None, "write PLANE RESET STAY before, if they are not to")
+
     def _in_machine(self, said: Said, code: gx.Item) -> str:
         """M91: the coordinates of the machine, which leave the tool out."""
         if self.following:
@@ -156,6 +164,8 @@ class Moves(Saying):
                 self.refuse(f"{item.name} counts from the last block with M91", item)
             words += f" {item.name}{self._from_point(said, item)}"
             self.lose(item.name)
+            if item.name in ROTARY:
+                self._check_untilted()
             self.moved |= {item.name} & set(ROTARY)
         if self.turn != 0 or self.mirrored is None:
             self.lose("XYZ")  # an axis of the machine is none of theirs

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from decimal import Decimal
+from typing import NoReturn
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import Cycles
@@ -34,19 +36,23 @@ class Planes(Cycles):
         spatial, how, options = found.groups()
         self.ends(f"PLANE {'SPATIAL' if spatial else 'RESET'}", item)
         axes = sorted({*self.reading.rotary, *self.turned()})
-        stand = [self.place.get(axis) for axis in axes]
-        if how == "STAY":
-            open_ = bool(spatial) and any(at is not None and Decimal(at) for at in stand)
-            open_ |= bool(spatial) and self.following
-        else:
-            open_ = not axes or any(at is None or Decimal(at) for at in stand)
+        open_ = [axis for axis in axes if axis not in self.place]
+        turned = any(Decimal(self.place[axis]) for axis in axes if axis in self.place)
+        if how != "STAY":
             self.assumed[ALONE.format(" and ".join(axes))] = None
-        if open_ or (self.following and how != "STAY"):
-            known = axes and None not in stand
-            places = ", ".join(f"{axis} = 0" for axis in axes or "AC")
-            why = "an axis is turned" if known else "whether an axis is turned is not known"
-            hint = () if known or how == "STAY" else (STARTS.format(places),)
-            self.refuse(f"{item.name.strip()[:40]}: {why}", item, *hint)
+            if turned or open_ or not axes or self.following:
+                self._refuse_turned(item, axes, open_)
+        elif spatial and (turned or self.following or (open_ and not self.reading.stays)):
+            self._refuse_turned(item, axes, open_)
+        self.untilted = bool(spatial)
         if FEED.search(options):
             self.feed_lost = True
         return self.along()
+
+    def _refuse_turned(self, item: gx.Item, axes: Sequence[str], open_: Sequence[str]) -> NoReturn:
+        """Refuse PLANE where an axis is turned, or may be: `open_` are those that may."""
+        known = axes and not open_
+        places = ", ".join(f"{axis} = 0" for axis in axes or "AC")
+        why = "an axis is turned" if known else "whether an axis is turned is not known"
+        hint = () if known or self.moved.intersection(open_) else (STARTS.format(places),)
+        self.refuse(f"{item.name.strip()[:40]}: {why}", item, *hint)

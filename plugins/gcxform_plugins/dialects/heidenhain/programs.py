@@ -55,7 +55,7 @@ STATE = (
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
     *("shift", "new_shift", "hole", "pecks", "cycle", "bounded", "calls", "left", "repeated"),
     *("selected", "by_cycle", "plane", "places", "turn", "mirrored", "deltas", "refers"),
-    *("spindle", "untold"),
+    *("spindle", "untold", "untilted"),
 )
 BEGUN = STATE.index("begun")
 state_of = attrgetter(*STATE)

@@ -68,6 +68,7 @@ class Words(gx.Translator):
     plane     G17, G18 or G19, as blocks have it
     deltas    DL and DR of the tool in the spindle, as TOOL CALL has said
     turn      degrees by which X and Y are turned;  mirrored: the axes that are; None: not known
+    untilted  PLANE SPATIAL with angles of 0 is in force
     over      whether the program has ended
     q         what parameters are worth, by their names; None where only the control knows
     computes  something was computed, or decided: lines are no more what they say by themselves
@@ -101,7 +102,7 @@ class Words(gx.Translator):
         self.mirrored: str | None = ""
         self.in_spindle = ""
         self.tool_names = gx.ToolNames(self.reading)
-        self.over = self.computes = False
+        self.over = self.computes = self.untilted = False
         self.q: dict[str, float | None] = {
             f"Q{number}": value
             for number, value in self.reading.parameters.items()
