@@ -68,7 +68,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | PLANE RESET STAY | cancels what is refused here | [K] |
 | PLANE SPATIAL with angles of 0, STAY | the same where no axis is turned | [K] |
 | these with TURN or MOVE | nothing where rotary axes are at 0; else, and MB: refused | 620 |
-| an axis that turns under PLANE SPATIAL | refused: words allow for it | 530 technical manual, p. 761 |
+| an axis that turns under PLANE SPATIAL | refused: words allow for it | 530 technical, p. 761 |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
