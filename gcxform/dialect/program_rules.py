@@ -22,7 +22,6 @@ class ProgramRule:
     spindle_stands     the spindle stands still, as far as the control knows, when a program starts
     unit_is_set        a setting of the control decides in which unit a program begins
     block_delete       what is done with `/` blocks: "execute", "skip", or "": a switch decides
-    asides             a slash within a block: the switch decides on the M codes behind it alone
     needs_end          a file without M2 or M30, and not between two percent signs, is refused
     stops_at_end       M2 and M30 stop the control
     resets_at_end      where they do not: the modes they leave behind
@@ -37,7 +36,6 @@ class ProgramRule:
     spindle_stands: bool = False
     unit_is_set: bool = False
     block_delete: str = ""
-    asides: bool = False
     needs_end: bool = False
     stops_at_end: bool = True
     resets_at_end: Mapping[str, str] = field(default_factory=dict)
@@ -56,6 +54,7 @@ class TextRule:
     comments              how a comment may begin: any of "(" and ";"
     active_comments       how comments begin that the control executes, in capitals
     telling_comments      which of these only show or log something
+    asides                a slash within a block: the switch decides on the M codes behind it alone
     acts_anywhere         characters on which it acts as they come in, also in a comment
     semicolon_ends        `;` ends a block also inside a comment in parentheses
     parenthesis_ends      so does the parenthesis that begins one: nothing behind it is read
@@ -69,6 +68,7 @@ class TextRule:
     comments: str = "("
     active_comments: tuple[str, ...] = ()
     telling_comments: tuple[str, ...] = ()
+    asides: bool = False
     acts_anywhere: str = ""
     semicolon_ends: bool = False
     parenthesis_ends: bool = False

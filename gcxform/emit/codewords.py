@@ -168,7 +168,7 @@ class CodeWords:
         for number, *_ in codes_in(text):
             one, other = m_codes_of(self.manner, number)
             said = self.saying.instead(f"M{number}") != f"M{number}"
-            crosses = self.source is not self.target and not self.target.program_rule.asides
+            crosses = self.source is not self.target and not self.target.text_rule.asides
             if said or crosses or one is None or other is None or not same_m(one, other, set()):
                 self.draft.refuse(item, "codes behind a slash within a block", OWN_BLOCK)
         after = any(event.after for event in self.meaning.events if event.aside)

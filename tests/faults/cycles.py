@@ -254,7 +254,7 @@ MUTATIONS = (
     Mutation(
         "comments: a percent sign gets into the file of a Fanuc",
         "plugins/gcxform_plugins/dialects/fanuc.py",
-        'lower_case=False, acts_anywhere="%"',
+        'lower_case=False, asides=True, acts_anywhere="%"',
         "lower_case=False",
         "tests/test_corpus.py::test_case[dialects/across/percent-in-a-comment]",
     ),

@@ -79,6 +79,7 @@ def patterns_of(dialect: type[Dialect]) -> list[tuple[str, str, str]]:
     # a number has no sign where expressions are, for it is an operator there
     named = [each for each in named if not double or each[1] != "NUMBER" or each[0] == "NUMBER"]
     first = [(n, scope_of(n), f"{PLACES[own]}(?:{p})") for n, own, p in named if own in PLACES]
+    named.sort(key=lambda each: each[1] == "BLOCK_DELETE")  # which stands elsewhere in few grammars
     return [*first, *((n, scope_of(n), p) for n, own, p in named if own not in ONLY_THERE)]
 
 

@@ -32,7 +32,7 @@ def read_aside(
     item: Mark, shape: Shape, dialect: type[Dialect], meaning: Meaning
 ) -> Iterator[Refusal]:
     """Turn the codes behind a slash into events; refuse those on which more would hang."""
-    if not dialect.program_rule.asides:
+    if not dialect.text_rule.asides:
         message = f"this is not {dialect.name} G-code: '/' does not fit here"
         yield Refusal("GX101", item.start, 1, message)
     for number, at, width in codes_in(shape.block.text[item.start : item.end]):

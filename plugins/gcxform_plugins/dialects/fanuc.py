@@ -198,8 +198,8 @@ class Fanuc(gx.Dialect):
         "G44": "a tool length is along Z (parameter 5001)",
         "M29": "M29 makes the next tap rigid and moves nothing (parameter 5210)",
     }
-    program_rule = gx.ProgramRule(has_title=True, unit_is_set=True, asides=True)
-    text_rule = gx.TextRule(lower_case=False, acts_anywhere="%")
+    program_rule = gx.ProgramRule(has_title=True, unit_is_set=True)
+    text_rule = gx.TextRule(lower_case=False, asides=True, acts_anywhere="%")
     block_rule = gx.BlockRule(
         last_code_wins=True,
         mill=True,

@@ -44,7 +44,8 @@ BY_H = "posts for it call by H"
 
 NO_PLANES = replace(Fanuc.tip_rule, planes={})
 """Which of two attitudes the others take is not known."""
-UNTITLED = replace(Fanuc.program_rule, has_title=False, asides=False)
+UNTITLED = replace(Fanuc.program_rule, has_title=False)
+NO_ASIDES = replace(Fanuc.text_rule, asides=False)
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
 
 
@@ -56,6 +57,7 @@ class Mazak(Fanuc):
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
+    text_rule = NO_ASIDES
     point_rule = replace(Fanuc.point_rule, dwell={"X": 1.0, "P": 0.001})
 
 
@@ -87,6 +89,7 @@ class Syntec(Fanuc):
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
+    text_rule = NO_ASIDES
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{n: code for n, code in Fanuc.codes.items() if not n.startswith(("G54.", "G10"))},
         **{code: gx.Code("units") for code in ("G70", "G71")},
@@ -118,6 +121,7 @@ class Brother(Fanuc):
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
+    text_rule = NO_ASIDES
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **Fanuc.codes,
         "G100": v.barrier("non-modal", CHANGE, "THSD"),
@@ -142,6 +146,7 @@ class Hurco(Fanuc):
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
+    text_rule = NO_ASIDES
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **{name: code for name, code in Fanuc.codes.items() if name not in HURCO_GONE},
         **{
