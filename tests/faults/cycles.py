@@ -255,7 +255,7 @@ MUTATIONS = (
         "comments: a percent sign gets into the file of a Fanuc",
         "plugins/gcxform_plugins/dialects/fanuc.py",
         'lower_case=False, asides=True, acts_anywhere="%"',
-        "lower_case=False",
+        "lower_case=False, asides=True",
         "tests/test_corpus.py::test_case[dialects/across/percent-in-a-comment]",
     ),
     Mutation(
