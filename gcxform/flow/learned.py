@@ -13,13 +13,14 @@ line is translated as ever.
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from types import FunctionType
-from typing import Any, NamedTuple, NoReturn, Protocol
+from typing import Any, NoReturn, Protocol
 
 from gcxform.flow.items import Item, Part
+from gcxform.flow.stretch import Ahead, Computed, Known, Numbers, Slots, Stretch
 from gcxform.values import dataclass
 
 MARK = re.compile("\ue000([0-9]+)\ue001")
@@ -28,7 +29,6 @@ BEFORE = 1_000_000  # slots from here on are places of axes before the line
 SOON = 8  # known lines in a row, behind which it is worth while to look for more at once
 ANY, CODE, DIGITS = "any", "code", "digits"
 """What the numbers of an item may be: any; those of this very line; any that have digits alone."""
-Numbers = Sequence[str]
 
 
 class LookedAtError(Exception):
@@ -77,14 +77,6 @@ for _method in ("__float__", "__int__", "__index__", "__complex__"):
     setattr(Opaque, _method, Opaque._no)
 
 
-@dataclass(frozen=True, slots=True)
-class Slots:
-    """Which numbers of a shape belong to what is learnt, and which have to be digits alone."""
-
-    codes: tuple[int, ...]
-    digits: tuple[int, ...]
-
-
 @dataclass(eq=False, slots=True)
 class Step:
     """What a line becomes: templates with the slots in them, ends of axes, and what is behind.
@@ -124,23 +116,6 @@ class Learner(Protocol):
     def blocks(self, items: Sequence[Item]) -> Any: ...  # noqa: D102
 
 
-class Ahead(NamedTuple):
-    """Lines that were split at once: `keys` without numbers; those of each begin at `starts`."""
-
-    keys: Sequence[str]
-    numbers: Numbers
-    starts: Sequence[int]
-
-
-class Learnt(Hashable, Protocol):
-    """What is asked of the shape of a line."""
-
-    @property
-    def steady(self) -> bool: ...  # noqa: D102
-    @property
-    def slots(self) -> Any: ...  # noqa: D102
-
-
 class Learned:
     """The steps of one translator, and where among them it is.
 
@@ -162,8 +137,8 @@ class Learned:
         node = self.node or self._entered()
         if node is None:
             return None
-        step = node.steps.get(_name(shape, slots, numbers))
-        if step is None or not _fits(slots, numbers):
+        step = node.steps.get(slots.name(shape, numbers))
+        if step is None or not slots.fit(numbers):
             return None
         for axis, slot in step.ends:
             self.ends[axis] = numbers[slot]
@@ -176,41 +151,22 @@ class Learned:
         self.node = self.node or self._entered()
         return self.node is not None
 
-    def stretch(self, ahead: Ahead, lines: range, shapes: Mapping[str, Learnt]) -> list[str]:
+    def stretch(
+        self,
+        ahead: Ahead,
+        lines: range,
+        shapes: Mapping[str, Known],
+        computed: Callable[[Ahead, int], Computed | None],
+    ) -> list[str]:
         """Return the blocks of lines that are known and have one each, up to the first that is not.
 
-        It goes on behind them.
+        It goes on behind them. Of a line without a block there is an empty one.
         """
-        keys, numbers, starts = ahead
-        node, steps = self.node, list[Step]()
-        for line in lines:
-            shape = shapes.get(keys[line])
-            if node is None or shape is None or not shape.steady:
-                break
-            at, slots = starts[line], shape.slots
-            step = node.steps.get(_name(shape, slots, numbers, at))
-            if step is None or not step.in_order or not _fits(slots, numbers, at):
-                break
-            steps.append(step)
-            node = step.behind
-        if not steps:
-            return []
-        self.node = node
-        behind = lines.start + len(steps)
-        self._tell(steps, starts[lines.start : behind], numbers)
-        given = tuple(numbers[starts[lines.start] : starts[behind]])
-        return ("\n".join([step.in_order for step in steps]) % given).split("\n")
-
-    def _tell(self, steps: Sequence[Step], starts: Sequence[int], numbers: Numbers) -> None:
-        """Take note of where axes are told to be behind lines: what the last of each says."""
-        axes = {axis for step in {*steps} for axis, _ in step.ends}
-        first = len(steps) - 1
-        while first and axes:
-            axes -= {axis for axis, _ in steps[first].ends}
-            first -= 1
-        for step, at in zip(steps[first:], starts[first:], strict=True):
-            for axis, slot in step.ends:
-                self.ends[axis] = numbers[at + slot]
+        known = Stretch(ahead, self.node, shapes)
+        known.take(lines, computed)
+        self.node = known.node
+        self.ends |= known.told()
+        return known.blocks()
 
     def _entered(self) -> Node | None:
         """Return the node of the state of the translator."""
@@ -238,8 +194,8 @@ class Learned:
         """Return what there is to learn of a line, before it is translated; None without it."""
         if self.count >= MOST:
             self.nodes, self.count = {}, 0
-        node, name = self._entered(), _name(shape, slots, numbers)
-        if node is None or name in node.steps or not _fits(slots, numbers):
+        node, name = self._entered(), slots.name(shape, numbers)
+        if node is None or name in node.steps or not slots.fit(numbers):
             return None
         self.count += 1
         node.steps[name] = None
@@ -335,17 +291,6 @@ def _in_order(blocks: Sequence[tuple[str, tuple[int, ...]]], count: int) -> str:
     for k in range(count):
         pieces.append(f"%s{next(left)}" if k in slots else "%.0s")
     return "".join(pieces)
-
-
-def _name(shape: Hashable, slots: Slots, numbers: Numbers, at: int = 0) -> Hashable:
-    """Return what lines are called that do the same; their numbers begin `at` a place."""
-    codes = slots.codes
-    return (shape, *[numbers[at + k] for k in codes]) if codes else shape
-
-
-def _fits(slots: Slots, numbers: Numbers, at: int = 0) -> bool:
-    """Whether the numbers have digits alone that have to."""
-    return not slots.digits or all([numbers[at + k].isdigit() for k in slots.digits])
 
 
 def _kept(values: Mapping[str, Any]) -> dict[str, tuple[Any, Any]]:

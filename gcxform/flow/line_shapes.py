@@ -11,7 +11,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cache
-from itertools import accumulate
 from typing import ClassVar
 
 from lark import Lark, Token
@@ -20,8 +19,9 @@ from lark.exceptions import UnexpectedInput
 from gcxform.diagnostics import Diagnostic, InputError, Location
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.items import Item, Part, part_of
-from gcxform.flow.learned import CODE, DIGITS, Ahead, Slots
+from gcxform.flow.learned import CODE, DIGITS
 from gcxform.flow.speller import ASIDE, HIDDEN
+from gcxform.flow.stretch import Ahead, Slots
 from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.syntax import grammar_cache as kept
 from gcxform.syntax.grammar import parsed, refusal_of
@@ -132,7 +132,7 @@ class LineShapes(ABC):
         if text is None:
             ahead, k = self._split_ahead(line)
             key = ahead.keys[k]
-            found = list(ahead.numbers[ahead.starts[k] : ahead.starts[k + 1]])
+            found = [*ahead.numbers_of(k)]
         else:
             pieces = self._split(text)
             found, key = pieces[1::2], SLOT.join(pieces[::2])
@@ -146,6 +146,15 @@ class LineShapes(ABC):
                 return shape, [number for k, number in enumerate(found) if k not in fixed]
         return self._new_shape(line, self.lines[line] if text is None else text, key, found)
 
+    def known_shape(self, ahead: Ahead, k: int) -> Shape | None:
+        """Return the shape of one of the lines ahead, if there was one like it."""
+        key = ahead.keys[k]
+        shape = self._shapes.get(key)
+        if shape is None and (fixed := self._fixed.get(key)) is not None:
+            at = ahead.starts[k]
+            shape = self._partly.get((key, *[ahead.numbers[at + slot] for slot in fixed]))
+        return shape
+
     def _split_ahead(self, line: int) -> tuple[Ahead, int]:
         """Return some lines, each without its numbers, and with them; which of them is `line`."""
         part, k = divmod(line, AHEAD)
@@ -155,9 +164,7 @@ class LineShapes(ABC):
                 self._parts_ahead.clear()
             first = part * AHEAD
             pieces = self._split("\n".join(self.lines[first : first + AHEAD]))
-            keys = SLOT.join(pieces[::2]).split("\n")
-            starts = [*accumulate([key.count(SLOT) for key in keys], initial=0)]
-            found = self._parts_ahead[part] = Ahead(keys, pieces[1::2], starts)
+            found = self._parts_ahead[part] = Ahead.of(first, pieces, SLOT)
         return found, k
 
     def _new_shape(

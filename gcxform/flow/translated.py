@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import compress
 
 import numpy as np
 
@@ -95,13 +96,16 @@ def _run(
             if translator.loses:
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()
-            blocks += found
-            if len(found) == 1:  # most of a program that computes: two ranges take as long again
+            whole = "" not in found
+            blocks += found if whole else filter(None, found)
+            if whole and len(found) == 1:  # there are many: two ranges take as long again
                 origin.append(line)
                 visits.append(translator.visit)
                 continue
-            origin += range(line, line + len(found))
-            visits += range(translator.visit - len(found) + 1, translator.visit + 1)
+            lines = range(line, line + len(found))
+            times = range(translator.visit - len(found) + 1, translator.visit + 1)
+            origin += lines if whole else compress(lines, found)
+            visits += times if whole else compress(times, found)
     except InputError as error:
         return blocks, origin, visits, lost, error
     return blocks, origin, visits, lost, None

@@ -23,10 +23,11 @@ from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item
-from gcxform.flow.learned import SOON, Ahead, Learned
+from gcxform.flow.learned import SOON, Learned
 from gcxform.flow.line_shapes import COMMENT, LineShapes, Shape
 from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.speller import Speller
+from gcxform.flow.stretch import Ahead, Computed
 from gcxform.modal.state import Reading
 from gcxform.system.limits import how_to_raise, limits
 
@@ -100,13 +101,13 @@ class Translator(LineShapes):
         """Return where axes are, to be changed in its place; None for what is not known."""
         return {}
 
-    def in_plain_words(self, text: str) -> tuple[str, Callable[[], None]] | None:
-        """Return a line that `computes` in plain words, and what does all else that it does.
+    def plain_words(self, ahead: Ahead, k: int) -> Computed | None:
+        """Return a line that `computes` in plain words, one of those ahead; None for others.
 
         It is asked where lines are learnt, and may not hang on more than variables, nor change more
-        of the translator, and nothing before what it returned is called. None for others.
+        of the translator, and nothing before it is done.
         """
-        del text
+        del ahead, k
         return None
 
     def several(self) -> list[str]:
@@ -190,7 +191,8 @@ class Translator(LineShapes):
     def run(self) -> Iterator[tuple[int, Sequence[str]]]:
         """Yield blocks with the line that they are for, from 0. Raises InputError.
 
-        Several are those of as many lines that follow upon each other, one for each.
+        Several are those of as many lines that follow upon each other, one for each; an empty one
+        is none.
         """
         left = most = QUICK * limits().steps + len(self.lines)
         while self.at < len(self.lines):
@@ -215,9 +217,11 @@ class Translator(LineShapes):
                 yield first, blocks
                 continue
             if shape.routine:
-                before = self.visit
-                yield from self._at_once()
-                left -= self.visit - before
+                blocks = self.several()
+                left -= len(blocks)
+                self._pass(len(blocks) - 1)
+                yield first, blocks
+                self._pass(1)
                 shape, numbers = self.shape(self.line)
             for block in self._learnt(shape, numbers):
                 yield self.line, (block,)
@@ -228,26 +232,21 @@ class Translator(LineShapes):
         for block in self.closing():
             yield self.line, (block,)
 
-    def _at_once(self) -> Iterator[tuple[int, Sequence[str]]]:
-        """Yield the blocks of a run of lines, and go on to the line behind them."""
-        blocks, first, visit = self.several(), self.line, self.visit
-        begin = 0
-        for end in [*(k for k, block in enumerate(blocks) if not block), len(blocks)]:
-            if begin < end:
-                self.visit = visit + end - 1
-                yield first + begin, blocks[begin:end]
-            begin = end + 1
-        self.line, self.at = first + len(blocks), self.at + len(blocks)
-        self.visit = visit + len(blocks)
-
     def _stretch(self, learned: Learned) -> list[str]:
         """Return the blocks of the lines from here on that are known, one for each; go on to them.
 
         The translator is not touched by these.
         """
-        known = learned.stretch(*self._lines_ahead(), self._shapes)
+        known = learned.stretch(*self._lines_ahead(), self._shapes, self._in_plain_words)
         self._pass(len(known))
         return known
+
+    def _in_plain_words(self, ahead: Ahead, k: int) -> Computed | None:
+        """Return one of the lines ahead in plain words; None for one that is not so or is new."""
+        shape = self.known_shape(ahead, k)
+        if shape is None or not shape.computes or shape.comments:
+            return None
+        return self.plain_words(ahead, k)
 
     def _plain_behind(self) -> list[str]:
         """Return the blocks of the plain lines from here on, one for each; go on to them."""
@@ -307,18 +306,18 @@ class Translator(LineShapes):
 
     def _computed(self, shape: Shape, learned: Learned) -> Iterable[str] | None:
         """Return the blocks of a line that computes, as they were learnt; None without these."""
-        if not learned.enter() or (found := self.in_plain_words(self.lines[self.line])) is None:
+        if (
+            not learned.enter()
+            or (found := self.plain_words(*self._split_ahead(self.line))) is None
+        ):
             return None
-        text, done = found
         blocks: list[str] | None = []
-        if text.strip():
-            plain, numbers = self.shape(self.line, text)
-            if plain.slots is None or plain.comments:
-                return None
-            blocks = learned.blocks(plain, plain.slots, numbers)
+        if found.shape is not None:
+            slots = found.shape.slots
+            blocks = None if slots is None else learned.blocks(found.shape, slots, found.numbers)
         if blocks is None:
             return None
-        done()
+        found.done()
         return _with_comments(blocks, shape.comments)
 
     def learnt_text(self, text: str, blocks: Callable[[Sequence[Item]], list[str]]) -> list[str]:

@@ -9,7 +9,7 @@ has a point, for there are words that have none.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from itertools import accumulate
 from typing import Any
 
@@ -42,17 +42,19 @@ class TreeShapes:
             tree = self._trees[text] = self._parse(text)
         return tree
 
-    def shape(self, text: str) -> tuple[Hashable, list[str]]:
-        """Return the shape of a line, and its numbers; None for it where they have none in common.
-
-        Trees of lines of one shape have the same nodes, and texts beside the numbers. Raises
-        UnexpectedInput.
-        """
-        key, numbers = _key(text)
+    def key(self, text: str) -> str:
+        """Return a line without its numbers, and with their forms. Raises UnexpectedInput."""
+        key, _ = _key(text)
         if key not in self._fixed:
             self.parse(text)
-        fixed = self._fixed.get(key)
-        return None if fixed is None else (key, *[numbers[k] for k in fixed]), numbers
+        return key
+
+    def fixed(self, key: str) -> tuple[int, ...] | None:
+        """Return which numbers of lines of a key are part of their shape; None for no shape.
+
+        Trees of lines of one shape have the same nodes, and texts beside the other numbers.
+        """
+        return self._fixed.get(key)
 
     def spans(self, text: str) -> list[tuple[int, int]]:
         """Return where the numbers of a line stand: columns from 0."""

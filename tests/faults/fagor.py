@@ -37,9 +37,9 @@ MUTATIONS = (
     ),
     Mutation(
         "translation: a run without some blocks is for the lines before",
-        TRANSLATION,
-        "            begin = end + 1",
-        "            begin = end",
+        "gcxform/flow/translated.py",
+        "            origin += lines if whole else compress(lines, found)\n",
+        "            origin += lines[: sum(map(bool, found))]\n",
         "tests/test_klartext_runs.py",
     ),
     Mutation(

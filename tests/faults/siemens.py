@@ -39,6 +39,7 @@ UNITS = "plugins/gcxform_plugins/dialects/siemens/units.py"
 LEARNING = "plugins/gcxform_plugins/dialects/siemens/learning.py"
 LEARNED = "gcxform/flow/learned.py"
 LEARNT = "tests/properties/test_learned.py"
+STRETCH = "gcxform/flow/stretch.py"
 ANGLES = "plugins/gcxform_plugins/dialects/siemens/angles.py"
 COMPILING = "plugins/gcxform_plugins/dialects/siemens/compiling.py"
 VARIABLES = "plugins/gcxform_plugins/dialects/siemens/variables.py"
@@ -701,30 +702,30 @@ MUTATIONS = (
     ),
     Mutation(
         "learned: a code is any number",
-        LEARNED,
-        "    return (shape, *[numbers[at + k] for k in codes]) if codes else shape\n",
-        "    return shape\n",
+        STRETCH,
+        "        return (shape, *[numbers[at + k] for k in self.codes]) if self.codes else shape\n",
+        "        return shape\n",
         LEARNT,
     ),
     Mutation(
         "learned: of a long run of lines the last alone says where axes are",
-        LEARNED,
-        "            axes -= {axis for axis, _ in steps[first].ends}\n",
+        STRETCH,
+        "            axes -= ends.keys()\n",
         "            break\n",
         LEARNT,
     ),
     Mutation(
         "learned: a run of lines ends nowhere",
         LEARNED,
-        "        self.node = node\n        behind",
-        "        behind",
+        "        self.node = known.node\n",
+        "",
         LEARNT,
     ),
     Mutation(
         "learned: a number of digits alone is any number",
-        LEARNED,
-        "    return not slots.digits or all([numbers[at + k].isdigit() for k in slots.digits])\n",
-        "    return True\n",
+        STRETCH,
+        "        return not self.digits or all([numbers[at + k].isdigit() for k in self.digits])\n",
+        "        return True\n",
         LEARNT,
     ),
     Mutation(
@@ -927,8 +928,50 @@ MUTATIONS = (
     Mutation(
         "siemens: a compiled line sets nothing",
         "gcxform/flow/translation.py",
-        "        done()\n",
+        "        found.done()\n",
         "",
+        f"{LEARNT}::test_programs_are_translated_alike",
+    ),
+    Mutation(
+        "siemens: a compiled line in a row of known ones sets nothing",
+        STRETCH,
+        "        line.done()\n",
+        "",
+        f"{LEARNT}::test_programs_are_translated_alike",
+    ),
+    Mutation(
+        "learned: lines of one shape in a row have one code",
+        STRETCH,
+        "                stop = k + next(n for n, code in enumerate(codes) if code != codes[0])\n",
+        "                pass\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: lines of one shape in a row have digits if the first has",
+        STRETCH,
+        '            if not "".join(digits).isdigit():\n',
+        "            if False:\n",
+        LEARNT,
+    ),
+    Mutation(
+        "learned: the first of lines of one shape in a row says where axes are",
+        STRETCH,
+        "len(self.given) + starts[behind - 1] - at",
+        "len(self.given)",
+        LEARNT,
+    ),
+    Mutation(
+        "siemens: a sign before a number of a compiled line is lost",
+        COMPILING,
+        "        if self.signs:\n",
+        "        if False:\n",
+        f"{LEARNT}::test_programs_are_translated_alike",
+    ),
+    Mutation(
+        "siemens: lines of one key and other forms are compiled as one",
+        "plugins/gcxform_plugins/dialects/siemens/computing.py",
+        'form = ahead.keys[k], DIGITS.sub("0", " ".join(numbers))',
+        'form = ahead.keys[k], ""',
         f"{LEARNT}::test_programs_are_translated_alike",
     ),
     Mutation(

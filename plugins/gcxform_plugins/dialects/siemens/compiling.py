@@ -8,10 +8,13 @@ with a variable of the program or the control, and one that reads what it sets i
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
+from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 from lark import Token
 
+import gcxform as gx
 from gcxform_plugins.dialects.siemens.arithmetic import COUNTS
 from gcxform_plugins.dialects.siemens.cells import converted
 from gcxform_plugins.dialects.siemens.expressions import PARAMETER, Expressions, number_text
@@ -39,20 +42,59 @@ class Compiled(NamedTuple):
 
     pieces: tuple[str, ...]
     places: tuple[int, ...]
-    words: tuple[tuple[str, Valued], ...]
+    words: tuple[Valued, ...]
     sets: tuple[tuple[int, Valued], ...]
 
-    def text(self, numbers: Numbers) -> str:
-        """Return the line in plain words. Raises NoValueError, OverflowError."""
-        told = iter([way.format(number_text(value(numbers))) for way, value in self.words])
-        found = [self.pieces[0]]
-        for place, piece in zip(self.places, self.pieces[1:], strict=True):
-            found += (next(told) if place < 0 else numbers[place], piece)
-        return "".join(found)
+    def text(self, told: Numbers) -> str:
+        """Return the line in plain words, for what it is `told`."""
+        return "".join(chain(*zip(self.pieces, (*told, ""), strict=True)))
+
+    def told(self, numbers: Numbers) -> list[str]:
+        """Return what stands between the pieces. Raises NoValueError, OverflowError."""
+        if not self.words:
+            return [numbers[place] for place in self.places]
+        worth = iter([number_text(value(numbers)) for value in self.words])
+        return [numbers[place] if place >= 0 else next(worth) for place in self.places]
 
     def given(self, numbers: Numbers) -> list[tuple[int, Any]]:
         """Return R parameters and what they become. Raises NoValueError, OverflowError."""
         return [(n, converted("REAL", value(numbers))) for n, value in self.sets]
+
+    def known(
+        self, numbers: Numbers, shape: Callable[[str], tuple[Any, Numbers]]
+    ) -> InPlainWords | None:
+        """Return the line with the shape of its plain text; None where no such lines are learnt.
+
+        Raises NoValueError, OverflowError.
+        """
+        told = self.told(numbers)
+        text = self.text(told)
+        if not text.strip():
+            return InPlainWords(self, None, ())
+        try:
+            found, seen = shape(text)
+        except gx.InputError:  # it is refused when it is come to
+            return None
+        if found.slots is None or found.comments or len(seen) != len(told):
+            return None
+        assert all(map(str.endswith, seen, told))
+        signs = tuple(one.removesuffix(other) for one, other in zip(seen, told, strict=True))
+        return InPlainWords(self, found, signs if any(signs) else ())
+
+
+class InPlainWords(NamedTuple):
+    """A line with the shape of its plain text, None without a word, and signs of its numbers."""
+
+    line: Compiled
+    shape: Any
+    signs: tuple[str, ...]
+
+    def computed(self, numbers: Numbers, take: Callable[[Any], None]) -> gx.Computed:
+        """Return the line for its numbers. Raises NoValueError, OverflowError."""
+        told, given = self.line.told(numbers), self.line.given(numbers)
+        if self.signs:
+            told = [sign + number for sign, number in zip(self.signs, told, strict=True)]
+        return gx.Computed(self.shape, told, partial(take, given))
 
 
 class Compiler:
@@ -74,7 +116,7 @@ class Compiler:
             raise _LeftError
         at = 0
         parts: list[str | int] = []
-        words: list[tuple[str, Valued]] = []
+        words: list[Valued] = []
         sets: dict[int, Valued] = {}
         read: set[str] = set()
         for node in tree.children:
@@ -93,8 +135,9 @@ class Compiler:
                     raise _LeftError
                 sets[int(name[1:])] = self._value(value, slots)
             else:
-                words.append(self._word(name, value, slots))
-                parts += (-1,)
+                before, worth, behind = self._word(name, value, slots)
+                words.append(worth)
+                parts += (before, -1, behind)
         stop = text.find(";")
         parts += _literal(text, at, len(text) if stop < 0 else stop, slots)
         if sets and read and len(words) + len(sets) > 1:
@@ -109,12 +152,12 @@ class Compiler:
             raise _LeftError
         return name
 
-    def _word(self, name: str, value: Any, slots: Places) -> tuple[str, Valued]:
-        """Return a word with a place for its number, and that."""
+    def _word(self, name: str, value: Any, slots: Places) -> tuple[str, Valued, str]:
+        """Return what of a word stands before its number, that, and what stands behind it."""
         if rule_of(value) != "axis_value":
-            return f" {name}={{}} ", self._value(value, slots)
+            return f" {name}=", self._value(value, slots), " "
         way, inner = value.children
-        return f" {name}={str(way).upper()}({{}}) ", self._value(inner, slots)
+        return f" {name}={str(way).upper()}(", self._value(inner, slots), ") "
 
     # --- values ---
 
@@ -144,8 +187,8 @@ class Compiler:
         name, *index = node.children
         if index or not PARAMETER.fullmatch(str(name).upper()):
             raise _LeftError
-        worth = self.worth
-        return lambda _: worth.checked(worth.variable(node))  # type: ignore[arg-type]
+        parameter, checked, number = self.worth.parameter, self.worth.checked, int(str(name)[1:])
+        return lambda _: checked(parameter(number))  # type: ignore[arg-type]
 
     def _operated(self, sign: str, left: Any, right: Any, slots: Places) -> Valued:
         operate, checked = self.worth.arithmetic.operators[sign], self.worth.checked
@@ -173,7 +216,7 @@ def _literal(text: str, start: int, end: int, slots: Places) -> Iterator[str | i
 
 def _made(
     parts: Sequence[str | int],
-    words: tuple[tuple[str, Valued], ...],
+    words: tuple[Valued, ...],
     sets: tuple[tuple[int, Valued], ...],
 ) -> Compiled:
     """Return a line of which pieces and places come in any order."""

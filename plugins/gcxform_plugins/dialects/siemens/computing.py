@@ -6,7 +6,8 @@ A line with a flow word says where to go on (`deciding.py`), and is no block.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence
+from contextlib import suppress
 from typing import Any
 
 from lark import Tree
@@ -14,7 +15,7 @@ from lark.exceptions import UnexpectedInput
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.siemens.compiling import MOST, Compiled, Compiler
+from gcxform_plugins.dialects.siemens.compiling import MOST, Compiler, InPlainWords
 from gcxform_plugins.dialects.siemens.deciding import Deciding
 from gcxform_plugins.dialects.siemens.expressions import number_text
 from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of
@@ -25,6 +26,7 @@ COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
 SLASH = re.compile(r"\A[ \t]*/[0-9]?")
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
+DIGITS = re.compile("[0-9]+")
 CYCLES = re.compile(r"CYCLE8[0-9]+|HOLES[12]|WORKPIECE", re.IGNORECASE)
 HANDED_ON = re.compile(rf"(?:{CYCLES.pattern})[ \t]*\((?:[^\"A-Z]|\"[^\"]*\")*[A-Z]", re.IGNORECASE)
 """Cycles that are handed on what is not a plain number, and their like."""
@@ -48,7 +50,8 @@ class Computing(Deciding):
         self.standing: list[tuple[int, str]] = []
         self.unsaid: set[str] = set()
         self.unknown_cycle = ""
-        self._compiled: dict[Hashable, Compiled | None] = {}
+        self._keys: dict[tuple[str, str], str] = {}
+        self._compiled: dict[Hashable, InPlainWords | None] = {}
         self._compiler = Compiler(self.worth, self.given)
         self.fed, self.feed_mode = True, "94"
         if reading.stays and reading.feed is None:
@@ -64,27 +67,45 @@ class Computing(Deciding):
         kind, name = str(part.kind), str(part.names[0])
         return kind == "expression" or (kind == "indexed" and name == "R")
 
-    def in_plain_words(self, text: str) -> tuple[str, Callable[[], None]] | None:
-        """Return a line in plain words, and what sets its R parameters; None for other lines."""
+    def plain_words(self, ahead: gx.Ahead, k: int) -> gx.Computed | None:
+        """Return a line in plain words, which may set R parameters; None for other lines."""
+        numbers, grammar = ahead.numbers_of(k), self.grammar_of_expressions
+        form = ahead.keys[k], DIGITS.sub("0", " ".join(numbers))
+        key = self._keys.get(form)
+        if key is None and (key := self._new_key(form, ahead.first + k)) is None:
+            return None
+        fixed, bare = grammar.fixed(key), [number.lstrip("+-") for number in numbers]
+        if fixed is None:
+            return None
+        name = (key, *[bare[slot] for slot in fixed])
         try:
-            shape, numbers = self.grammar_of_expressions.shape(text)
-        except UnexpectedInput:
-            return None
-        if shape is None:
-            return None
-        if shape not in self._compiled:
-            if len(self._compiled) >= MOST:
-                self._compiled.clear()
-            tree, spans = self.tree_of(text), self.grammar_of_expressions.spans(text)
-            self._compiled[shape] = self._compiler.compiled(tree, text, spans)
-        line = self._compiled[shape]
-        if line is None:
-            return None
-        try:
-            plain, given = line.text(numbers), line.given(numbers)
+            if name not in self._compiled:
+                self._compile(name, ahead.first + k, bare)
+            line = self._compiled[name]
+            return line and line.computed(bare, self._take)
         except (v.NoValueError, OverflowError):
             return None
-        return plain, lambda: self._take(given)
+
+    def _new_key(self, form: tuple[str, str], line: int) -> str | None:
+        """Return the key of a line by the grammar of expressions, and keep it."""
+        if len(self._keys) >= MOST:
+            self._keys.clear()
+        with suppress(UnexpectedInput):
+            return self._keys.setdefault(form, self.grammar_of_expressions.key(self.lines[line]))
+        return None
+
+    def _compile(self, name: Hashable, line: int, numbers: Sequence[str]) -> None:
+        """Compile a line and keep it by a name; None of one that is left to `executed`.
+
+        Raises NoValueError, OverflowError.
+        """
+        if len(self._compiled) >= MOST:
+            self._compiled.clear()
+        text = self.lines[line]
+        tree, spans = self.tree_of(text), self.grammar_of_expressions.spans(text)
+        made = self._compiler.compiled(tree, text, spans)
+        known = made and made.known(numbers, lambda plain: self.shape(line, plain))
+        self._compiled[name] = known
 
     def _take(self, given: Sequence[tuple[int, Any]]) -> None:
         """Take R parameters of a line that is compiled."""

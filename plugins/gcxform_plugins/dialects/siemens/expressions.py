@@ -37,7 +37,10 @@ def lost(what: str) -> v.NoValueError:
 
 def number_text(value: float) -> str:
     """Return a number as it is written in a word."""
-    return text_of(Decimal(repr(value)))
+    text = repr(value)
+    if "e" not in text and text[-2:] == ".0":  # what most are, at half the time
+        return text[:-2] if text != "-0.0" else "0"
+    return text_of(Decimal(text))
 
 
 class Expressions(v.Evaluator):
@@ -191,9 +194,9 @@ class Expressions(v.Evaluator):
         if upper in CONSTANTS and not index:
             return CONSTANTS[upper]
         if PARAMETER.fullmatch(upper) and not index:
-            return self._parameter(int(upper[1:]))
+            return self.parameter(int(upper[1:]))
         if upper == "R" and index:
-            return self._parameter(self.indices(index[0])[0])
+            return self.parameter(self.indices(index[0])[0])
         cell = self.find(upper)
         if cell is None:
             raise lost(f"what {name} is: nothing in the program defines it")
@@ -210,7 +213,8 @@ class Expressions(v.Evaluator):
             raise lost(f"the value of {name}")
         return value
 
-    def _parameter(self, number: int) -> Value:
+    def parameter(self, number: int) -> Value:
+        """Return what an R parameter is worth. Raises NoValueError."""
         value = self.r.get(number, LOST)
         if value is LOST:
             raise lost(f"the value of R{number}")
