@@ -26,7 +26,7 @@ WORDS = re.compile("(?:N )?L(?: [XYZ]V)+(?: R0)?(?: FV| FMAX)?")
 """What words of a line have to be, each by a letter: then its block is what is left of it."""
 ABOUT = re.compile("(?:N )?(?:CC XV YV|C XV YV DR[+-](?: FV)?)")
 """And those of circles, beside such lines."""
-LEFT_OUT = re.compile(r"^(?:[0-9]+ )?L | R0| FMAX|\+", re.MULTILINE)
+LEFT_OUT = (" R0", " FMAX", "+")
 MOST_SHAPES = 32
 LEAST = 2  # lines
 SENSES = {"DR+": "G3", "DR-": "G2"}
@@ -134,10 +134,13 @@ class Runs(Klartext):
                 end = max(self._text.rfind("\n", at, place) + 1, at)
         if self._text.count("\n", at, end) <= LEAST:
             return []
-        blocks = LEFT_OUT.sub("", self._text[at : self._text.rindex("\n", at, end - 1)])
-        code = self.moving("G0" if rapid else "G1")
-        self._take(blocks)
-        return f"{code}{' ' if code else ''}{blocks}".split("\n")
+        said = self._text[at : self._text.rindex("\n", at, end - 1)]
+        for each in LEFT_OUT:
+            said = said.replace(each, "")
+        blocks = [line.partition("L ")[2] for line in said.split("\n")]
+        blocks[0] = f"{self.moving('G0' if rapid else 'G1')} {blocks[0]}".lstrip()
+        self._take(said)
+        return blocks
 
     def _end_of_run(self, rapid: bool, at: int) -> int:
         """Return where in the text a run ends that goes on at a place; the place if none does.
