@@ -25,6 +25,7 @@ from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, wri
 DEFINED = re.compile(r"CYCLE?\s+DEF\s*(\d{1,4})(?:\.(\d{1,2}))?(?![\d.])\s*(.*?)\s*~?\s*")
 CALLED = re.compile(r"CYCL\s+CALL(\s+PAT\s+F\s*MAX)?((?:\s*M\s*\d{1,4})*)(?:\s*M)?\s*")
 PLACE = re.compile(rf"\s*POS[1-9]\s*\(\s*X\s*({VALUE})\s*Y\s*({VALUE})\s*Z\s*({VALUE})\s*\)\s*")
+QUANTITY = re.compile(r"\bQ\d+\s*=")
 LAST_VALUE = re.compile(rf"(?:[A-Z][A-Z. -]*?)?\s*({VALUE})")
 PARAMETER = re.compile(
     rf"Q(\d{{1,4}})\s*=\s*"
@@ -80,7 +81,8 @@ class Cycles(Datums):
         if number == 1:
             return self._peck(item, part, text)
         why = OTHERS.get(number, "a cycle of the control")
-        self.refuse(f"CYCL DEF {number} {text}".rstrip() + f" is {why}", item)
+        name = QUANTITY.split(text)[0].strip()
+        self.refuse(f"CYCL DEF {number} {name}".rstrip() + f" is {why}", item)
 
     def _call(self, item: gx.Item) -> list[str]:
         """CYCL CALL: the cycle where the tool stands, or at the places of PATTERN DEF."""
