@@ -22,6 +22,7 @@ ANSWERS: dict[str, Any] = {
     "units": "mm",
     "argument-list": "II",
     "tip-at-start": "off",
+    "tip-words": "workpiece",
     "cutter-comp-corners": "arc",
     "cutter-comp-entry": "own",
     "radius": 0.001,

@@ -1,4 +1,4 @@
-"""Planes in space on tables that turn: against published poses, and by quaternions."""
+"""Planes in space and followed tips on tables that turn: published poses, and quaternions."""
 
 from __future__ import annotations
 
@@ -29,9 +29,11 @@ AXES = {
 FREE = "is free in this plane"
 
 
-def machine(tmp_path: Path, name: str, work: list[float], gauge: tuple[float, ...]) -> Machine:
+def machine(
+    tmp_path: Path, name: str, work: list[float], gauge: tuple[float, ...], words: str = "workpiece"
+) -> Machine:
     lines = ["format = 1", f"table = {[axis[0] for axis in AXES[name]]}", "[tool.1]"]
-    lines += [f"length = {TOOL}", "[work-offset.G54]"]
+    lines += [f"length = {TOOL}", f'[control]\ntip-words = "{words}"', "[work-offset.G54]"]
     lines += [f"{axis} = {place!r}" for axis, place in zip("XYZ", work, strict=True)]
     for letter, direction, point in AXES[name]:
         lines += [f"[axis.{letter}]", f"direction = {[float(d) for d in direction]}"]
@@ -44,7 +46,12 @@ def machine(tmp_path: Path, name: str, work: list[float], gauge: tuple[float, ..
 
 def reached(machine: Machine, rotary: str, plane: str, point: str) -> list[float]:
     """Return where X, Y and Z of the machine stand at a point of a plane, and the rotary axes."""
-    text = f"G21 G90 G54 G17 G0\n{rotary}\n{plane}\nG53.1\nG43 H1 {point}\nM30\n"
+    return led_to(machine, f"{rotary}\n{plane}\nG53.1\nG43 H1 {point}")
+
+
+def led_to(machine: Machine, blocks: str) -> list[float]:
+    """Return where the axes of the machine stand behind blocks."""
+    text = f"G21 G90 G54 G17 G0\n{blocks}\nM30\n"
     fanuc = default_registry().dialect("fanuc")
     path = gx.Program(text.encode(), fanuc, Reading().on(machine)).path
     work = machine.work_offsets["G54"]
@@ -82,7 +89,13 @@ def by_quaternions(name: str, gauge: tuple, work: list, plane: list, point: list
     x, y, z, i, j, k = plane
     way = rotated(point, (0, 0, 1), k)
     way = rotated(rotated(way, (1, 0, 0), j), (0, 0, 1), i)
-    tip = tuple(w + g + o + v for w, g, o, v in zip(work, gauge, (x, y, z), way, strict=True))
+    at = [o + v for o, v in zip((x, y, z), way, strict=True)]
+    return tip_by_quaternions(name, gauge, work, at, angles)
+
+
+def tip_by_quaternions(name: str, gauge: tuple, work: list, point: list, angles: list):
+    """Return the same for a point of the workpiece, in its coordinates at rotary angles of 0."""
+    tip = tuple(w + g + p for w, g, p in zip(work, gauge, point, strict=True))
     lines = [Line(letter, "T", axis, place, -1) for letter, axis, place in AXES[name]]
     held = (gauge[0], gauge[1], gauge[2] - TOOL)
     return linear_for(Device(name, held, lines), tip, angles)
@@ -109,6 +122,47 @@ def test_a_point_of_a_plane_is_where_quaternions_say(seed: int, tmp_path: Path) 
     for (_, axis, _), angle in reversed([*zip(AXES[name], found[3:], strict=True)]):
         normal = rotated(normal, axis, -angle)
     assert normal == pytest.approx((0, 0, 1), abs=1e-8)
+
+
+@pytest.mark.parametrize("words", ["workpiece", "machine"])
+@pytest.mark.parametrize("seed", range(20))
+def test_a_tip_is_where_quaternions_say(seed: int, words: str, tmp_path: Path) -> None:
+    draw = random.Random(seed)
+    name = draw.choice([*AXES])
+    gauge = tuple(draw.uniform(-50, 50) for _ in "XYZ")
+    work, shift, point = ([round(draw.uniform(-80, 80), 3) for _ in "XYZ"] for _ in range(3))
+    angles = [round(draw.uniform(-90, 90), 2) for _ in "AC"]
+    letters = [axis[0] for axis in AXES[name]]
+    said = " ".join(f"{letter}{angle}" for letter, angle in zip(letters, angles, strict=True))
+    away, there, back = (
+        " ".join(f"{axis}{value}" for axis, value in zip("XYZ", at, strict=True))
+        for at in (shift, point, [0.0, 0.0, 0.0])
+    )
+    device = machine(tmp_path, name, work, gauge, words)
+    moves = f"G43.4 H1 {back} {said}\nG91 {there}\nG90"
+    found = led_to(device, f"{said}\nG52 {away}\n{moves}")
+    at = [s + p for s, p in zip(shift, point, strict=True)]
+    want = tip_by_quaternions(name, gauge, work, at, angles)
+    if words == "machine":
+        want = [w + p for w, p in zip(work, at, strict=True)]
+        want[2] += TOOL
+    assert found == pytest.approx([*want, *angles], abs=1e-7)
+
+
+@pytest.mark.parametrize(("file", "name"), [("ac", "AC_table"), ("bc", "BC_table")])
+def test_a_cam_says_a_point_in_a_plane_and_as_a_tip(
+    file: str, name: str, shared: Path, tmp_path: Path
+) -> None:
+    """The programs state a point twice, which is one if tips are of the workpiece at angles 0."""
+    (program,) = shared.glob(f"corpus/programs/fanuc/*/fixtures/milling/fanuc/test_5ax_{file}_*.nc")
+    device = machine(tmp_path, name, [11.0, -7.0, 40.0], (0.0, 0.0, 0.0))
+    lines = [line.partition(" ")[2] for line in program.read_text().splitlines()]
+    at = next(n for n, line in enumerate(lines) if line.startswith("G68.2"))
+    rotary, _, plane, turn, point, leave, tip, there = lines[at - 2 : at + 6]
+    assert (turn, leave, tip) == ("G53.1", "G69", "G43.4 H02")
+    before = led_to(device, f"{rotary}\n{plane}\n{turn}\n{point}\n{leave}")
+    behind = led_to(device, f"{rotary}\n{tip}\n{there}")
+    assert behind[:2] == pytest.approx(before[:2], abs=1e-3)
 
 
 def test_a_plane_is_compared_and_shown_where_it_leads(tmp_path: Path) -> None:

@@ -2,8 +2,9 @@
 
 A chain that only says the same words in other modes, for the same control, needs to know no more
 than that they are others: their blocks stay, and positions are lost at each of them. Any other
-chain has to know where such coordinates are. Planes are followed on a machine whose tables are told
-(`gcxform/modal/frames/planes.py`); all else is refused by name.
+chain has to know where such coordinates are. On a machine whose tables are told planes are followed
+(`gcxform/modal/frames/planes.py`), and tips as long as no axis turns
+(`gcxform/modal/frames/followed_tips.py`); all else is refused by name.
 """
 
 from __future__ import annotations
@@ -23,7 +24,11 @@ from gcxform.modal.state import Reading
 from gcxform.toolpath.facts import AXIS_POSITIONS, TIP_POSITIONS
 
 EULER = AXES + "PQRIJK"
-TAKES = {"plane": EULER, "no-plane": "", "tip": "H", "define-plane": EULER, "orient": ""}
+TAKES = {
+    **dict.fromkeys(("plane", "define-plane"), EULER),
+    **dict.fromkeys(("tip", "follow-tip"), "H"),
+    **dict.fromkeys(("no-plane", "orient"), ""),
+}
 Which = Literal["refused", "kept", "followed"]
 
 
@@ -40,7 +45,7 @@ def says_the_same(steps: Iterable[Pass]) -> bool:
 def treatment(same: bool, steps: Sequence[Pass], machine: Machine | None) -> Which:
     """Return what passes make of such codes; `same`: they write for the control they read.
 
-    Passes that make tips of positions of axes, or the reverse, follow no planes.
+    Passes that make tips of positions of axes, or the reverse, follow neither.
     """
     if same and says_the_same(steps):
         return "kept"

@@ -92,8 +92,8 @@ class TipRule:
     follows_at_start whether it follows the tip when a program starts; None where that is not known
     unfollowed       codes of tilted planes and tips that are not followed, with what they do:
                      "plane", "no-plane" or "tip"; see `gcxform/contract/tilted_planes.py`
-    planes           codes of tilted planes that are followed on a machine whose tables are known,
-                     with what they do: "define-plane" or "orient"
+    planes           codes of tilted planes and tips that are followed on a machine whose tables are
+                     known, with what they do: "define-plane", "orient" or "follow-tip"
     """
 
     codes: Mapping[str, str] = field(default_factory=dict)

@@ -113,6 +113,11 @@ declare(
         Setting("tool-length-alone", "what G43 without Z does: Z, or zero", ("moves", "shifts")),
         Setting("tool-length-axis", "where lengths stay in G18 and G19", ("Z",)),
         Setting(TIP_AT_START, "whether it does before the first block", ("off", "on")),
+        Setting(
+            "tip-words",
+            "where X, Y and Z of G43.4 count if it comes with the table turned",
+            ("workpiece", "machine"),
+        ),
     )
 )
 

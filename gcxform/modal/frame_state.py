@@ -47,12 +47,14 @@ class TiltedPlane:
     """A plane in space: word -> turned @ word + zero, in positions of a tool without length.
 
     Before the rotary axes have turned that holds where they are at 0; `angles` (deg) are those that
-    they have then been turned to.
+    they have then been turned to. `tip`: words are those of a tip that the control follows, as long
+    as the axes stand at these angles, and without `turned` they are those of the work offset.
     """
 
-    turned: Matrix
+    turned: Matrix | None
     zero: Vector
     angles: Mapping[str, float] = field(default_factory=dict)
+    tip: bool = False
 
 
 @dataclass(frozen=True)
@@ -82,7 +84,7 @@ class FrameState:
     polar, diameter   G16 and G7 are in force
     homes         machine positions of G28 and G30
     following     whether the control follows the tip of the tool; None where that is not known
-    plane         the tilted plane that is followed, by G68.2 and G53.1
+    plane         the tilted plane that is followed, by G68.2 and G53.1, or the tip, by G43.4
     tilt, tip     the tilted plane and the tip that are in force, by code and number: where they are
                   is not known; `tilted` counts them
     """
@@ -214,7 +216,7 @@ class FrameState:
         for k, name in self._set_anywhere(matrix is not None).items():
             origin[k] += name
         shift = [place if isfinite(place) else 0.0 for place in zero]
-        if self.plane is not None and self.plane.angles:
+        if self.plane is not None and self.plane.angles and self.plane.turned is not None:
             matrix, shift[:3] = self.plane.turned, self.plane.zero
         assert self.axes[:3] == "XYZ"
         for k, length in enumerate(self.tool):

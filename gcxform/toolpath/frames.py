@@ -21,6 +21,7 @@ import numpy as np
 from gcxform.system.arrays import Floats, Ints
 from gcxform.values import dataclass
 
+FLAT = 1e-12  # by how much the cosine of an angle that is none may differ from 1
 Vector = tuple[float, ...]
 Matrix = tuple[tuple[float, float, float], ...]
 
@@ -62,6 +63,10 @@ class Frame:
     def shifts_only(self) -> bool:
         """Whether words are positions but for a shift."""
         return self.matrix is None and not self.diameter
+
+    def tilts(self, normal: int) -> bool:
+        """Whether a plane of words, across an axis, is turned out of the axes of positions."""
+        return self.matrix is not None and abs(abs(self.matrix[normal][normal]) - 1.0) > FLAT
 
     @cached_property
     def plain(self) -> bool:

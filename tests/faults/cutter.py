@@ -40,6 +40,13 @@ def _beside(name: str, old: str, new: str, file: str = "proof") -> Mutation:
 
 MUTATIONS = (
     Mutation(
+        "cutter-comp: a contour in a tilted plane is one of the axes",
+        "plugins/gcxform_plugins/passes/cutter_comp/refusals.py",
+        "(on | leaves) & tilted[path.frame, 2 - path.plane]",
+        "(on | leaves) & False",
+        f"{CORPUS}[cutter-comp/tilted]",
+    ),
+    Mutation(
         "cutter-comp: every control goes straight past corners in rapid",
         "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
         "if not context.source.cutter_comp.corners:",

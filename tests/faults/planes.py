@@ -1,16 +1,22 @@
-"""Faults of planes in space: where they lead, which attitude is taken, what may be done in them."""
+"""Faults of planes in space and of followed tips: where they lead, and what may be done in them."""
 
 from __future__ import annotations
 
 from faults.mutation import Mutation
 
 PLANES = "gcxform/modal/frames/planes.py"
+TIPS = "gcxform/modal/frames/followed_tips.py"
 LOOK = "gcxform/modal/moves/in_planes.py"
 POINT = "tests/test_tilted_planes.py::test_a_point_of_a_plane_is_where_quaternions_say[0]"
+TIP = "tests/test_tilted_planes.py::test_a_tip_is_where_quaternions_say[0-workpiece]"
 
 
 def case(name: str) -> str:
     return f"tests/test_corpus.py::test_case[dialects/fanuc/tilted-plane-{name}]"
+
+
+def tip(name: str) -> str:
+    return f"tests/test_corpus.py::test_case[dialects/fanuc/followed-tip-{name}]"
 
 
 MUTATIONS = (
@@ -31,8 +37,8 @@ MUTATIONS = (
     Mutation(
         "planes: the gauge point is where the axes are",
         PLANES,
-        "np.array(plane.zero) - base + gauge, angles) - gauge + base",
-        "np.array(plane.zero) - base, angles) + base",
+        "zero - base + gauge, angles) - gauge + base",
+        "zero - base, angles) + base",
         POINT,
     ),
     Mutation(
@@ -87,9 +93,16 @@ MUTATIONS = (
     Mutation(
         "planes: an axis turns in one",
         LOOK,
-        "turns |= word[1][lines]",
-        "pass",
+        "(~stays | self.own[lines])",
+        "False",
         case("turns"),
+    ),
+    Mutation(
+        "planes: an axis that is named turns, also where it stands there already",
+        LOOK,
+        "(~stays | self.own[lines])",
+        "True",
+        tip("compensated"),
     ),
     Mutation(
         "planes: the words of a block that sets a length are no move in one",
@@ -115,9 +128,72 @@ MUTATIONS = (
     Mutation(
         "planes: G69 leaves one where it is",
         "gcxform/modal/frames/transforms.py",
-        'return replace(state, tilt="", plane=None)',
+        'return replace(state, tilt="", plane=followed)',
         'return replace(state, tilt="")',
         case("folded"),
+    ),
+    Mutation(
+        "tips: G69 ends one",
+        "gcxform/modal/frames/transforms.py",
+        'return replace(state, tilt="", plane=followed)',
+        'return replace(state, tilt="", plane=None)',
+        tip("compensated"),
+    ),
+    Mutation(
+        "tips: G49 ends none",
+        "gcxform/modal/frames/tool_lengths.py",
+        "plane = None if followed else state.plane",
+        "plane = state.plane",
+        tip("begins"),
+    ),
+    Mutation(
+        "tips: the table does not turn their words",
+        TIPS,
+        "matrix_of(carried(chain, np.eye(3), angles))",
+        "matrix_of(np.eye(3))",
+        TIP,
+    ),
+    Mutation(
+        "tips: the table does not take their zero along",
+        TIPS,
+        "place = zero_carried(chain, state, zero, angles)",
+        "place = vector_of(zero)",
+        TIP,
+    ),
+    Mutation(
+        "tips: they are of the workpiece, whatever the control does",
+        TIPS,
+        "if turned and said is None:",
+        "if False:",
+        tip("not-said"),
+    ),
+    Mutation(
+        "tips: words of a turned tip may be those of the machine",
+        TIPS,
+        "if asked.reading.turns_plainly:",
+        "if False:",
+        tip("folded"),
+    ),
+    Mutation(
+        "tips: X, Y and Z stand where they stood when one begins",
+        "gcxform/modal/frames/track.py",
+        "SPATIAL * (before.plane is not frames.plane)",
+        "0",
+        tip("begins"),
+    ),
+    Mutation(
+        "tips: the table stands where it stood behind a tool change",
+        LOOK,
+        "elif ORIENT not in said:",
+        "elif not said:",
+        tip("lost"),
+    ),
+    Mutation(
+        "tips: other zeros and lengths may come while one is followed",
+        PLANES,
+        "name not in WITH_TIP",
+        "False",
+        tip("busy"),
     ),
     Mutation(
         "planes: other controls take the attitudes of a Fanuc",

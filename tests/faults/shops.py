@@ -339,8 +339,8 @@ FAULTS = (
     (
         "G69 leaves a tilted plane where it is",
         "gcxform/modal/frames/transforms.py",
-        'return replace(state, tilt="", plane=None)',
-        "return replace(state, plane=None)",
+        'return replace(state, tilt="", plane=followed)',
+        "return replace(state, plane=followed)",
         f"{CASE}[dialects/fanuc/tilted-plane-kept]",
     ),
     (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from gcxform.modal.frame_state import FrameState
-from gcxform.modal.frames import planes
+from gcxform.modal.frames import followed_tips, planes
 from gcxform.modal.frames import tool_lengths as lengths
 from gcxform.modal.frames import transforms as turns
 from gcxform.modal.frames import work_offsets as offsets
@@ -33,6 +33,7 @@ ACTS: Mapping[str, Act] = {
     "plane": turns.plane,
     "no-plane": turns.no_plane,
     "tip": lengths.tip,
+    "follow-tip": followed_tips.follow,
     "define-plane": planes.define,
     "orient": planes.orient,
     "polar": turns.polar,
@@ -60,6 +61,7 @@ WORDS: Mapping[str, str] = {
     "offset-of-tool": "T",
     "no-length": "H",
     "tip": "H",
+    "follow-tip": "H",
     "plane": "PQRIJK",
     "define-plane": "PQRIJK",
     "vectors": "H",

@@ -34,6 +34,7 @@ from gcxform.modal.frame_state import (
 )
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.system.arrays import Floats
+from gcxform.toolpath.frames import Vector
 
 FLAT = 1e-9  # the sine of what may be between the tool and the plane it stands on
 EQUAL, APART = 1e-6, 0.01  # degrees: ways that are the same, and ways that are not for certain
@@ -46,11 +47,19 @@ IN_PLANE = frozenset(
     }
 )
 """Acts that leave a plane where it is."""
+WITH_TIP = frozenset({"no-length", "change-tool", "set-tool", "user-code", "call", "no-rotate"})
+"""Acts that leave a tip where it is, or end it."""
+PLANE = "the plane"
 
 
 def check_in_plane(state: FrameState, name: str, code: str) -> None:
-    """Refuse an act that would change what a plane counts from. Raises ActError."""
-    if state.plane is not None and name not in IN_PLANE:
+    """Refuse an act that would change what a plane, or a tip, counts from. Raises ActError."""
+    if state.plane is None:
+        return
+    if state.plane.tip and name not in WITH_TIP:
+        message = f"{code} while the control follows the tip is not resolved"
+        raise ActError("GX213", message, "draw the tool back, and write G49 before")
+    if not state.plane.tip and name not in IN_PLANE:
         raise ActError("GX213", f"{code} in a tilted plane is not followed", LEAVE)
 
 
@@ -61,8 +70,7 @@ def out_of_plane(state: FrameState, failed: str) -> FrameState:
 
 def define(state: FrameState, asked: Asked) -> FrameState:
     """G68.2: a plane in the coordinates of the work offset."""
-    if state.turns or state.polar or any(state.rotation.values()):
-        raise ActError("GX213", f"{asked.code} upon coordinates that are turned is not followed")
+    zero = zero_of_work(state, asked, PLANE)
     if asked.written.get("P") or {"Q", "R"} & asked.written.keys():
         raise ActError("GX213", f"{asked.code} is followed by three Euler angles alone: I, J, K")
     missing = [word for word in "XYZIJK" if word not in asked.written]
@@ -73,15 +81,22 @@ def define(state: FrameState, asked: Asked) -> FrameState:
     about_z, about_x, again = (
         np.array(turn) for turn in (rotation(i, 0, 1), rotation(j, 1, 2), rotation(k, 0, 1))
     )
-    zero = np.array(state.zero_of(state.work))[:3] + state.preset[:3] + state.local[:3]
     zero += [asked.words[axis] for axis in "XYZ"]
+    return replace(state, plane=TiltedPlane(matrix_of(about_z @ about_x @ again), vector_of(zero)))
+
+
+def zero_of_work(state: FrameState, asked: Asked, what: str) -> Floats:
+    """Return where words of 0 lead (3,) with all rotary axes at 0. Raises ActError."""
+    if state.turns or state.polar or any(state.rotation.values()):
+        raise ActError("GX213", f"{asked.code} upon coordinates that are turned is not followed")
+    zero = np.array(state.zero_of(state.work))[:3] + state.preset[:3] + state.local[:3]
     if state.adrift or not np.isfinite(zero - state.machine[:3]).all():
         raise ActError(
             "GX213",
-            f"where the table takes the plane of {asked.code} depends on where {state.work} is",
+            f"where the table takes {what} of {asked.code} depends on where {state.work} is",
             f"say its place in the machine: [work-offset.{state.work}] in the machine file",
         )
-    return replace(state, plane=TiltedPlane(matrix_of(about_z @ about_x @ again), vector_of(zero)))
+    return np.asarray(zero)
 
 
 def orient(state: FrameState, asked: Asked) -> FrameState:
@@ -90,19 +105,30 @@ def orient(state: FrameState, asked: Asked) -> FrameState:
     assert chain is not None  # else no code has this act
     if plane is None or plane.angles:
         raise ActError("GX213", f"{asked.code} without a plane that G68.2 has said before")
-    tilted, base = np.array(plane.turned), np.array(state.machine[:3])
-    angles = _attitude(chain, tilted, _standing(chain, state, asked), asked)
-    turned = _carried(chain, tilted, angles)
+    _check_ways(chain, asked)
+    tilted = np.array(plane.turned)
+    which = f"which attitude {asked.code} takes"
+    angles = _attitude(chain, tilted, standing(chain, state, asked, which, PLANE), asked)
+    turned = carried(chain, tilted, angles)
     if np.abs(turned[2] - [0.0, 0.0, 1.0]).max() > FLAT:
         raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
-    gauge = np.array(chain.tip)
-    zero = chain.onto_machine(np.array(plane.zero) - base + gauge, angles) - gauge + base
-    said = {axis: float(angle) for axis, angle in zip(chain.letters, angles, strict=True)}
+    zero = zero_carried(chain, state, np.array(plane.zero), angles)
     about_z = rotation(_spin(turned), 0, 1)
-    return replace(state, plane=TiltedPlane(about_z, vector_of(zero), said))
+    return replace(state, plane=TiltedPlane(about_z, zero, named(chain, angles)))
 
 
-def _carried(chain: Chain, matrix: Floats, angles: Floats) -> Floats:
+def named(chain: Chain, angles: Floats) -> dict[str, float]:
+    """Return angles (axes,) by the letters of their axes."""
+    return {axis: float(angle) for axis, angle in zip(chain.letters, angles, strict=True)}
+
+
+def zero_carried(chain: Chain, state: FrameState, zero: Floats, angles: Floats) -> Vector:
+    """Return where a zero (3,) is once the table has taken it along."""
+    gauge, base = np.array(chain.tip), np.array(state.machine[:3])
+    return vector_of(chain.onto_machine(zero - base + gauge, angles) - gauge + base)
+
+
+def carried(chain: Chain, matrix: Floats, angles: Floats) -> Floats:
     """Return directions (3, 3), in columns, as the table carries them."""
     points = chain.onto_machine(np.vstack([matrix.T, np.zeros(3)]), np.tile(angles, (4, 1)))
     return np.asarray((points[:3] - points[3]).T)
@@ -113,29 +139,37 @@ def _spin(turned: Floats) -> float:
     return float(np.degrees(np.arctan2(turned[1, 0], turned[0, 0])))
 
 
-def _standing(chain: Chain, state: FrameState, asked: Asked) -> Floats:
-    """Return where the rotary axes stand in the machine, degrees."""
+def standing(chain: Chain, state: FrameState, asked: Asked, what: str, turned: str) -> Floats:
+    """Return where the rotary axes stand in the machine, degrees. Raises ActError.
+
+    `what` depends on it, and `turned` is what turns with the axes.
+    """
     found = np.full(len(chain.axes), np.nan)
     for n, axis in enumerate(chain.axes):
         if axis.letter in state.axes:
             k = state.axes.index(axis.letter)
             found[n] = asked.position[k] - state.machine[k]
             if abs(state.zero_of(state.work)[k] - state.machine[k]) > EQUAL:
-                message = f"{asked.code}: {state.work} turns {axis.letter}, and the plane with it"
-                raise ActError("GX213", message, "say the plane in a work offset that does not")
+                message = f"{asked.code}: {state.work} turns {axis.letter}, and {turned} with it"
+                raise ActError("GX213", message, f"say {turned} in a work offset that does not")
         if np.isnan(found[n]):
             raise ActError(
                 "GX213",
-                f"which attitude {asked.code} takes depends on where {axis.letter} stands",
+                f"{what} depends on where {axis.letter} stands",
                 f"write {axis.letter} before, or say start = {{ {axis.letter} = ... }} in [input]",
             )
+    return found
+
+
+def _check_ways(chain: Chain, asked: Asked) -> None:
+    """Refuse axes of which it is not known how far they turn. Raises ActError."""
+    for axis in chain.axes:
         if axis.limits is None and axis.wrap is None:
             raise ActError(
                 "GX213",
                 f"which attitude {asked.code} takes depends on how far {axis.letter} turns",
                 f"say limits, or wrap, in [axis.{axis.letter}] of the machine file",
             )
-    return found
 
 
 def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> Floats:
@@ -154,7 +188,7 @@ def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> F
     if not len(angles):
         raise ActError("GX213", f"{asked.code}: no attitude is within the limits of the axes")
     angles = _nearest(angles, standing, asked)
-    if state is State.POLE and abs(_spin(_carried(chain, tilted, angles))) > EQUAL:
+    if state is State.POLE and abs(_spin(carried(chain, tilted, angles))) > EQUAL:
         raise ActError(
             "GX213",
             f"{asked.code}: {chain.letters[found.free or 0]} is free in this plane, and no manual "

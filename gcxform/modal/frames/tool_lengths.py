@@ -232,7 +232,9 @@ def no_length(state: FrameState, asked: Asked) -> FrameState:
     """G49: no tool length, and beside it H0 says nothing more."""
     if asked.words.get("H", 0.0) != 0:
         raise ActError("GX213", f"{asked.code} takes no H but H0")
-    return replace(state, tip="").with_tool(NO_TOOL, "")
+    followed = state.plane is not None and state.plane.tip
+    plane = None if followed else state.plane
+    return replace(state, tip="", plane=plane).with_tool(NO_TOOL, "")
 
 
 def vectors(state: FrameState, asked: Asked) -> FrameState:

@@ -22,6 +22,7 @@ from gcxform.modal.findings import Findings
 from gcxform.modal.frame_state import FrameState
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.acts import ACTS, done
+from gcxform.modal.frames.followed_tips import turned_tip
 from gcxform.modal.frames.planes import out_of_plane
 from gcxform.modal.frames.tool_lengths import LENGTH_STEP, length_moves
 from gcxform.modal.frames.transforms import turned_by
@@ -142,6 +143,8 @@ class Track:
             self.note_lost((1 << len(self.axes)) - 1)
         if act.name in SWITCHED and before.following is not frames.following:
             self._lose(line, 0 if self._upright() else SPATIAL)
+        if turned_tip(before) or turned_tip(frames):
+            self._lose(line, SPATIAL * (before.plane is not frames.plane))
         lengthened = act.name in LENGTHENED and frames.frame() != old
         height = self._moved_by_length(line, old) if lengthened else np.nan
         tools = self.dialect.tool_rule

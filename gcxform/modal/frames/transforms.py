@@ -87,8 +87,9 @@ def plane(state: FrameState, asked: Asked) -> FrameState:
 
 
 def no_plane(state: FrameState, asked: Asked) -> FrameState:
-    """G69: the coordinates of the work offset again."""
-    return replace(state, tilt="", plane=None)
+    """G69: the coordinates of the work offset again; a tip is none of its planes."""
+    followed = state.plane if state.plane is not None and state.plane.tip else None
+    return replace(state, tilt="", plane=followed)
 
 
 def _mirrored(state: FrameState) -> set[str]:

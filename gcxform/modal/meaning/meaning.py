@@ -75,6 +75,7 @@ ACT_ORDER = (
     "vectors",
     "no-vectors",
     "tip",
+    "follow-tip",
     "plane",
     "no-plane",
     "work",
@@ -111,7 +112,7 @@ PRESETS = frozenset({"preset", "set-work", "store-home"})
 LENGTHENED = frozenset(
     {
         *("length", "length-negative", "length-vector", "length-add", "length-number", "no-length"),
-        *("offset-of-tool", "vectors", "no-vectors"),
+        *("offset-of-tool", "vectors", "no-vectors", "follow-tip"),
     }
 )
 """What puts another tool length in force, or none."""

@@ -40,7 +40,10 @@ from gcxform.syntax.tree import CODES, Comment, Expression, Mark, Number, Statem
 
 BEHIND_AN_END = "; ends a block: what is behind it is another line, and a comment stands in ( )"
 TO_THE_CONSOLE = "$ begins a command for the console of a control, and no block: send it before"
-BY_A_TABLE = "on a table that turns it is followed, where the machine file says its axes"
+BY_A_TABLE = (
+    "on a table that turns it is followed where the machine file says its axes, by passes that "
+    "make no positions of axes of tips, nor the reverse"
+)
 CENTRE = "IJK"
 COMMENT = 0
 """The order of comments that are executed: LinuxCNC does so before all else in the block."""

@@ -13,6 +13,7 @@ import numpy as np
 from gcxform.catalogue.remedies import way_home_said
 from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR
+from gcxform.modal.frames.followed_tips import turned_tip
 from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.line_notes import AT, WayHome
 from gcxform.modal.meaning.calls import CALL
@@ -169,9 +170,10 @@ def warn_of_plunge(track: Track, line: int, code: str, stands: float, by_way: fl
 def _refuse_one_of_turned(track: Track, line: int, code: str, words: dict[str, float]) -> None:
     """Refuse a return of one of two axes that are turned together.
 
-    LinuxCNC then takes the program's axis home, other controls that of the machine.
+    LinuxCNC then takes the program's axis home, other controls that of the machine. From a tip it
+    is only read where no word leads anywhere.
     """
-    if track.frame.matrix is None or not words:
+    if track.frame.matrix is None or not words or turned_tip(track.state.frames):
         return
     mixed = np.abs(np.array(track.frame.matrix)) > 1e-15
     for k in range(3):
@@ -196,7 +198,8 @@ def _reached(track: Track, line: int, words: dict[str, float]) -> list[float]:
     if not track.frame.shifts_only:
         return found
     stands = track.state.position.tolist()
-    return [found[k] if axis in words else stands[k] for k, axis in enumerate(track.axes)]
+    moved = {axis for axis, value in words.items() if value or not steps}
+    return [found[k] if axis in moved else stands[k] for k, axis in enumerate(track.axes)]
 
 
 def _in_frame(track: Track, k: int, value: float) -> float:

@@ -30,9 +30,8 @@ def _tilted(path: Toolpath) -> Ints:
     """Return the arcs whose plane their frame turns out of the axes."""
     found = []
     for row in np.flatnonzero(path.is_arc).tolist():
-        matrix = path.frames[int(path.frame[row])].matrix
         normal = Plane(int(path.plane[row])).axes[2]
-        if matrix is not None and abs(abs(matrix[normal][normal]) - 1.0) > 1e-12:
+        if path.frames[int(path.frame[row])].tilts(normal):
             found.append(row)
     return np.array(found, np.int64)
 

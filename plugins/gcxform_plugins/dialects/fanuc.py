@@ -43,6 +43,7 @@
 | some of its I J K left out | they are 0; all left out: the tool keeps its direction |
 | G68.2 to G68.4, G53.1, G43.4 | stay, positions lost, where no pass asks where that is |
 | G68.2 X Y Z I J K, then G53.1 | turns a table onto a plane: `gcxform/modal/frames/planes.py` |
+| G43.4 while no axis turns | words of a tip on a table: `gcxform/modal/frames/followed_tips.py` |
 | G31 | ends at its target at the latest; the axes named then stand nowhere known |
 | G36, G37 | measure a tool and write its offset: refused |
 | G33, G34, G63 | threads and taps with a feed whose meaning changes: refused |
@@ -225,6 +226,6 @@ class Fanuc(gx.Dialect):
         codes={"G43.4": "G43"},
         vector_codes={"G43.5": "G43"},
         unfollowed={**dict.fromkeys(("G68.2", "G68.3", "G68.4", "G53.1"), "plane"), "G43.4": "tip"},
-        planes={"G68.2": "define-plane", "G53.1": "orient"},
+        planes={"G68.2": "define-plane", "G53.1": "orient", "G43.4": "follow-tip"},
     )
     cycle_rule: ClassVar[v.CycleRule] = CYCLE_RULE

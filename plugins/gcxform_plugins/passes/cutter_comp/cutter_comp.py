@@ -21,9 +21,9 @@ from gcxform_plugins.passes.cutter_comp.offsetting import (
     swept,
 )
 from gcxform_plugins.passes.cutter_comp.proof import prove_beside
+from gcxform_plugins.passes.cutter_comp.refusals import STILL, refuse_unresolved
 
 CODES = ("G41", "G42", "G41.1", "G42.1")
-STILL = 1e-9  # mm; a row that moves by less in the plane stands still there
 STRAIGHT = 1e-4  # rad; smaller turns are none, on controls of which nothing else is known
 
 
@@ -68,7 +68,7 @@ class CutterComp(gx.CompensationPass):
         path = path.replace(events=tuple(e for e in path.events if e.what not in CODES))
         if not path.side.any():
             return path.replace(blocks=blocks)
-        _refuse(path, context)
+        refuse_unresolved(path, context)
         self._refuse_open(path, context)
         centre = _CentrePath(path, self._manner(path, context))
         for first, last in _sections(path):
@@ -145,12 +145,6 @@ class ContourError(gx.InputError):
     alarm: bool = False
 
 
-WRITTEN = (
-    "the program writes the tool table with G10: set the radius at the control, give the machine "
-    "file the same, and leave the block out"
-)
-AGAIN = "lead the tool off the contour and cancel it with G40 before, and begin it again behind"
-END = "lead the tool off the contour, and end it with G40"
 CHOICES = {"corners": ("arc", "linear"), "entry": ("own", "next")}
 
 
@@ -159,80 +153,6 @@ def _sections(path: gx.Toolpath) -> Iterator[tuple[int, int]]:
     on = np.concatenate([[False], path.side != 0, [False]])
     edges = np.flatnonzero(on[1:] != on[:-1])
     yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
-
-
-def _refuse(path: gx.Toolpath, context: gx.PassContext) -> None:
-    """Refuse rows under compensation that cannot be resolved."""
-    on = path.side != 0
-    both = on[1:] & on[:-1]
-    changes = np.append(False, both & (np.diff(path.side) != 0))
-    changes |= np.append(False, both & (path.radius[1:] != path.radius[:-1]))
-    changes |= np.append(False, both & (path.plane[1:] != path.plane[:-1]))
-    changes |= np.append(False, both & (path.frame[1:] != path.frame[:-1]))
-    leaves = np.append(False, on[:-1]) & ~on
-    rule = context.source.cutter_comp
-    way = np.abs(path.end - path.start)[:, :3] > STILL
-    in_plane = (way & (np.arange(3) != 2 - path.plane[:, None])).any(axis=1)
-    for wrong, code, message, hint in (
-        (
-            on & np.isnan(path.radius),
-            "GX231",
-            "the radius of the tool under cutter compensation is not known",
-            _radius_said(path, context),
-        ),
-        (
-            changes,
-            "GX232",
-            "side, tool, plane or work offset change under cutter compensation",
-            AGAIN,
-        ),
-        (
-            (on | leaves)
-            & (path.lost | ~path.starts_known | np.isnan(path.end[:, :3]).any(axis=1)),
-            "GX232",
-            "a position under cutter compensation is not known",
-            "program X, Y and Z before G41 or G42",
-        ),
-        (
-            (on | leaves) & (path.form != gx.Form.PLAIN),
-            "GX232",
-            "a move of its own kind under cutter compensation",
-            AGAIN,
-        ),
-        (
-            leaves & ~in_plane & (not (rule.corners and rule.entry)),
-            "GX232",
-            "the first move behind G40 is not in the plane: controls differ in whether it ends it",
-            "program X or Y in the block with G40",
-        ),
-    ):
-        if wrong.any():
-            raise path.refuse(code, np.flatnonzero(wrong), message, hint)
-    _refuse_open_end(path, context)
-
-
-def _radius_said(path: gx.Toolpath, context: gx.PassContext) -> str:
-    """Return how a radius becomes known: a machine file says it, unless G10 writes the table."""
-    kinds = context.source.offset_rule.g10_tools
-    tables = (event for event in path.events if event.what == "G10")
-    if any(dict(event.values).get("L", np.nan) in kinds for event in tables):
-        return WRITTEN
-    said = "give a machine file with the tool, -m MACHINE.toml: radius = ... in [tool.*]"
-    if context.source.cutter_comp.stored or any(event.what == "M6" for event in path.events):
-        return said
-    return f"{said}; a tool that is in the spindle from the start: tool = n in [input]"
-
-
-def _refuse_open_end(path: gx.Toolpath, context: gx.PassContext) -> None:
-    """Refuse compensation that nothing cancels, unless the control is known to end it so."""
-    if not path.side[-1]:
-        return
-    ends = {f"M{number}" for number, code in context.source.m_codes.items() if code.ends}
-    ended = any(event.what in ends and event.row == len(path) for event in path.events)
-    rule = context.source.cutter_comp
-    if not (ended and rule.corners and rule.entry):
-        last = np.array([len(path) - 1])
-        raise path.refuse("GX232", last, "nothing cancels cutter compensation", END)
 
 
 class _CentrePath:
