@@ -241,6 +241,25 @@ def test_usage(tmp_path: Path) -> None:
     assert (low.exit_code, "below Z1" in low.stderr) == (3, True)
 
 
+def test_planes_and_tips_have_to_be_left(tmp_path: Path) -> None:
+    """In one no restart is safe; behind it G69 is restated, as where a program has it alone."""
+    machine = Path(__file__).parents[1] / "examples" / "three-plus-two" / "machine.toml"
+    head = HEAD.replace("G17", "G17 G54 G69") + "G0 Z90.\nA0. C0.\n"
+    plane = f"{head}G68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\nX1. Y1. Z5.\nX2.\nG69\nX3. Y3. Z9.\n"
+    tip = f"{head}G43.4 H1\nX1. Y1. Z5.\nX2.\nG49\nX3. Y3. Z9.\n"
+    for text, inside, behind in ((plane, 9, 12), (tip, 8, 11)):
+        (tmp_path / "p.nc").write_text(f"{text}X4.\nM30\n")
+        words = ["resume", "-f", "fanuc", "-m", str(machine), "--clearance", "99mm"]
+        refused, found = (
+            call(*words, "--line", str(line), str(tmp_path / "p.nc")) for line in (inside, behind)
+        )
+        assert "which is not restated" in refused.stderr
+        assert found.exit_code == 0, found.stderr
+        assert "G69" in found.stdout.splitlines()
+        assert "G68.2" not in found.stdout
+        assert "G43.4" not in found.stdout
+
+
 # --- what it prints ---
 
 

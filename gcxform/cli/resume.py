@@ -13,6 +13,7 @@ from gcxform.cli.common import options
 from gcxform.cli.common.failures import warn
 from gcxform.cli.common.programs import opened
 from gcxform.cli.common.request import Asked, needed_dialect
+from gcxform.contract.tilted_planes import with_known_planes
 from gcxform.diagnostics import Diagnostic, Location, Severity, UsageError
 from gcxform.dialect.dialect import Dialect
 from gcxform.pipeline.own_language import check_written
@@ -45,6 +46,7 @@ def command(
     """Print the blocks for a restart at a line, proved to lead to what the program does."""
     kind, reading = Asked(**asked).reads(needed_dialect(dialect))
     check_written(kind)
+    kind = with_known_planes(kind, reading)
     if plunge is not None and not plunge > 0:
         raise UsageError.one("GX706", f"{plunge:g} is not above 0", Location("--plunge"))
     if rest and clearance is None:

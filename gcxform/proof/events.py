@@ -143,7 +143,7 @@ class EventProof:
         """Return the events of a path that the control is told: not those that are folded away."""
         source, target = self.context.source, self.context.target
         events = tuple(
-            in_mm(event, path)
+            in_mm(event, path, source.tip_rule.unfollowed)
             for event in path.events
             if not only_for_cycles(event.what, source, target)
             and not (self.homes and event.what.startswith(BY))

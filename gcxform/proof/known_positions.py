@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from gcxform.system.distinct import distinct
 from gcxform.toolpath.path import Event, Kind, Toolpath
 
 LENGTHS = frozenset("XYZUVWIJKR")
+LENGTHS_OF_PLANES = frozenset("XYZ")  # the other words of a plane in space are angles
 
 
 def as_known(path: Toolpath, read: Toolpath, line: Ints, nth: Ints, switched: bool) -> Toolpath:
@@ -69,11 +71,12 @@ def _followed(path: Toolpath, read: Toolpath, row: Ints) -> Toolpath:
     return path.replace(frames=frames, frame=np.searchsorted(pairs, pair))
 
 
-def in_mm(event: Event, path: Toolpath) -> Event:
-    """Return an event with the lengths among the words of its G code in mm."""
+def in_mm(event: Event, path: Toolpath, planes: Container[str]) -> Event:
+    """Return an event with the lengths among the words of its G code in mm; `planes` are codes."""
     if event.what[0] != "G" or not path.blocks.inch[event.line - path.blocks.first]:
         return event
-    values = tuple((a, v * INCH if a in LENGTHS else v) for a, v in event.values)
+    lengths = LENGTHS_OF_PLANES if event.what in planes else LENGTHS
+    values = tuple((a, v * INCH if a in lengths else v) for a, v in event.values)
     return replace(event, values=values)
 
 

@@ -43,6 +43,9 @@ HANDLED: Final[Mapping[str, How]] = {
     "cycle": How.LAST,
     "stroke": How.LAST,
     "mirror": How.LAST,
+    "rotation": How.LAST,
+    "scaling": How.LAST,
+    "polar": How.LAST,
     "cancel": How.EACH,
     "non-modal": How.EACH,
     "override": How.EACH,
@@ -60,8 +63,15 @@ RESTATED: Final[Mapping[str, tuple[str, ...]]] = {
     "frame": (*(f"G{n}" for n in range(54, 60)), "G59.1", "G59.2", "G59.3"),
 }
 """The modal codes that are in the interpreter's state and that a preamble states."""
-ACTS_RESTATED: Final = frozenset({"work", "no-length", "length", "home", "machine"})
+ACTS_RESTATED: Final = frozenset(
+    {
+        *("work", "no-length", "length", "home", "machine"),
+        *("no-rotate", "no-scale", "no-mirror", "no-polar"),
+    }
+)
 """What codes that act on the frame may do before a restart: the rest is not restated."""
+ACTS_LEFT: Final = frozenset({"define-plane", "orient", "follow-tip"})
+"""What others leave behind no restart is in: a plane, or a tip."""
 ONE_BLOCK: Final = frozenset({"G4", "G9", "G28", "G30", "G53"})
 """Codes that hold for one block."""
 COOLANT_OFF: Final[Mapping[str, tuple[str, ...]]] = {"M9": ("M7", "M8"), "M89": ("M88",)}
@@ -109,7 +119,7 @@ class Memory:
                 code.effect is Effect.MODAL and name in RESTATED.get(code.group, ())
             ):
                 return ""
-            if code.act in ACTS_RESTATED or NUMBER.get(name) in CYCLES:
+            if code.act in ACTS_RESTATED | ACTS_LEFT or NUMBER.get(name) in CYCLES:
                 return ""
             known = code.effect in (Effect.INERT, Effect.DWELL) and code.group in HANDLED
             return "" if known else f"{name} was in force, which is not restated"
@@ -129,6 +139,8 @@ class Memory:
         elif what[0] == "G" and what not in ONE_BLOCK:
             code = self.dialect.codes[what]
             if code.act == "work" or HANDLED.get(code.group) is How.NOTHING:
+                return
+            if code.act in ACTS_LEFT and code.group not in HANDLED:
                 return
             how = HANDLED.get(code.group)
             self._enter(what if how is How.EACH else code.group, block, event, inch)

@@ -24,6 +24,7 @@ from gcxform.values import dataclass
 
 CLOSE = 1e-6  # mm, degrees: positions are written with so many decimals
 ARCS = ("G2", "G3")
+PLANE = "a tilted plane is in force"
 COMPARED = ("kind", "plane", "feed_mode", "source", "nth", "form", "side")
 MEASURED = ("end", "centre", "sweep", "feed", "radius", "control")  # the feed where it cuts
 
@@ -115,6 +116,10 @@ class Restart:
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
+        if state.frames.plane is not None:
+            what, end = ("a tip is followed", "G49") if state.frames.plane.tip else (PLANE, "G69")
+            message = f"no restart is safe here: {what}, which is not restated"
+            raise self.refusal(message, f"begin where it begins, or behind {end}")
         if state.groups["cutter-comp"] or state.side:
             message = (
                 "no restart is safe here: cutter compensation is on, and looks at moves before"

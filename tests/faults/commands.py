@@ -106,6 +106,20 @@ MUTATIONS = (
         "tests/test_resume.py",
     ),
     Mutation(
+        "resume: a restart may be in a tilted plane",
+        "gcxform/resume/restart.py",
+        "if state.frames.plane is not None:",
+        "if False:",
+        "tests/test_resume.py::test_planes_and_tips_have_to_be_left",
+    ),
+    Mutation(
+        "resume: what has said a plane is restated",
+        "gcxform/resume/memory.py",
+        "if code.act in ACTS_LEFT and code.group not in HANDLED:",
+        "if False:",
+        "tests/test_resume.py::test_planes_and_tips_have_to_be_left",
+    ),
+    Mutation(
         "resume: frames are not compared",
         "gcxform/resume/restart.py",
         "[mine != theirs for theirs in other.frames]",

@@ -161,12 +161,13 @@ class Track:
     def _moved_by_length(self, line: int, old: Frame) -> float:
         """Let go of Z where another length may move it; return its word if that stays for certain.
 
-        The word is nan where it does not. `old` is the frame with the length before.
+        The word is nan where it does not. `old` is the frame with the length before. Along which
+        axes a length lies in a plane that the tool does not stand on yet is not known.
         """
         if not length_moves(self.dialect, self.lines.reading):
             return np.nan
-        word = old.words_of(self.state.position.tolist())[2]
-        self._lose(line, 4)
+        plane, word = self.state.frames.plane, old.words_of(self.state.position.tolist())[2]
+        self._lose(line, 4 if plane is None or plane.angles else SPATIAL)
         return word if self.lines.reading.control.get(LENGTH_STEP) == "moves" else np.nan
 
     def _stand(self, k: int, word: float) -> None:

@@ -11,6 +11,8 @@ import numpy as np
 import gcxform as gx
 
 LENGTHS = frozenset("XYZUVWIJKR")
+OF_PLANES = frozenset("XYZ")
+"""The lengths of a code for a plane in space: the others of its words are angles, or directions."""
 FOLDED = frozenset({"set-work", "local", "preset", "rotate", "scale", "mirror", "define-plane"})
 """What codes do that are not written where they are folded into the words of moves."""
 KEPT = "the words of {} are in inches, stay, and would be read as mm"
@@ -53,6 +55,8 @@ def _has_length(event: gx.Event, path: gx.Toolpath, dialect: type[gx.Dialect]) -
     if code is None or (path.folded and code.act in FOLDED):
         return False
     letters = {address for address, value in event.values if value}  # 0 has no unit
+    if event.what in dialect.tip_rule.unfollowed:
+        return not letters.isdisjoint(OF_PLANES)
     return not letters.isdisjoint(LENGTHS.union(code.lengths))
 
 

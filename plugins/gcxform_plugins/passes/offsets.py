@@ -13,6 +13,8 @@ import numpy as np
 
 import gcxform as gx
 
+FLAT = 1e-15  # what is left of a word of another axis where nothing is
+
 
 @dataclass(frozen=True)
 class Offsets(gx.Pass):
@@ -84,11 +86,17 @@ class Offsets(gx.Pass):
                 raise path.refuse("GX314", rows, message, hint)
 
     def _check_turned(self, path: gx.Toolpath) -> None:
-        """Refuse first moves in other coordinates that leave out an axis which is then unknown."""
+        """Refuse first moves in other coordinates that leave out an axis which is then unknown.
+
+        An axis that no turn mixes with others stands where it stood.
+        """
         turns = [(frame.matrix, frame.polar, frame.work) for frame in path.frames]
         before = np.append(0, path.frame[:-1])[: len(path)]
         changes = np.array([[a != b for b in turns] for a in turns], np.bool_)[before, path.frame]
-        unknown = (np.isnan(path.end) & np.isnan(path.start))[:, :3]
+        mixed = np.array([_mixed(frame) for frame in path.frames])
+        work = np.unique([frame.work for frame in path.frames], return_inverse=True)[1]
+        counts = mixed[before] | mixed[path.frame] | (work[before] != work[path.frame])[:, None]
+        unknown = (np.isnan(path.end) & np.isnan(path.start))[:, :3] & counts
         lost = np.stack([path.lost >> k & 1 for k in range(3)], axis=1) == 1
         rows = np.flatnonzero(changes & (unknown & lost).any(axis=1))
         if len(rows):
@@ -98,3 +106,11 @@ class Offsets(gx.Pass):
             message += " where it stands in them"
             hint = "name the axes in this block, and the work offset at the head of the program"
             raise path.refuse("GX213", rows, message, hint)
+
+
+def _mixed(frame: gx.Frame) -> list[bool]:
+    """Return which of X, Y and Z are made of words of other axes as well."""
+    if frame.matrix is None:
+        return [frame.polar] * 3
+    others = np.abs(np.array(frame.matrix)) * (1.0 - np.eye(3)) > FLAT
+    return [frame.polar or bool(mixes) for mixes in others.any(axis=0) | others.any(axis=1)]
