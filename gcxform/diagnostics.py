@@ -155,6 +155,10 @@ class InputError(GcxformError):
     exit_code: ClassVar[int] = 3
 
 
+class SpellingError(InputError):
+    """A line of a language cannot be written back in its place; all of them may be, anew."""
+
+
 class VerificationError(GcxformError):
     """The output is not what it should be: nothing is written."""
 

@@ -14,7 +14,7 @@ from itertools import accumulate
 
 import numpy as np
 
-from gcxform.diagnostics import Diagnostic, InputError, Location
+from gcxform.diagnostics import Diagnostic, Location, SpellingError
 from gcxform.emit.spelled_out import inch_first
 from gcxform.flow.annexed import BYTE_ORDER_MARK, LINE_END
 from gcxform.flow.speller import UnspeakableError
@@ -55,7 +55,7 @@ def respelled(
 
     Words of lines that are `counting` from where an axis stands are written as positions, but for
     lines whose blocks stay and that no other can stand for: steps of a loop, or by a parameter.
-    Raises InputError where a line cannot be spelled, or would differ between its executions.
+    Raises SpellingError where a line cannot be spelled, or would differ between its executions.
     """
     new: dict[int, str] = {}
     changes: dict[int, bool] = {}
@@ -94,7 +94,7 @@ def respelled(
 def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
     """Refuse a line that is kept as it stands and is what a pass leaves nowhere: it would stay so.
 
-    Raises InputError.
+    Raises SpellingError.
     """
     translator, said = source.translator, source.text.splitlines()
     against = [
@@ -208,7 +208,7 @@ def _joined(given: bytes, new: dict[int, str]) -> bytes:
     return b"".join(found)
 
 
-def _refusal(source: Translated, line: int, message: str) -> InputError:
+def _refusal(source: Translated, line: int, message: str) -> SpellingError:
     text = source.lines[line]
     where = Location(*source.translator.place_of(line), 1, text, max(1, len(text.rstrip())))
-    return InputError((Diagnostic("GX501", message, where, HINT),))
+    return SpellingError((Diagnostic("GX501", message, where, HINT),))

@@ -79,6 +79,9 @@ class LineShapes(ABC):
         self.dialect = dialect
         self.line = 0
         self.comes_back = False
+        self.others: tuple[range, ...] = ()
+        """Lines, from 0, of other programs in the file: they stay where this one is written anew,
+        in its language."""
         self._lark = _grammar(*self.grammar)
         self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, Shape] = {}

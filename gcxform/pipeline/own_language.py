@@ -2,7 +2,8 @@
 
 A program of a control with such a language is written back, line by line, where no pass turns its
 positions into others: what is not understood of it stays as it stands. Else all of it has to be
-understood, and it is written whole, as that of another control would be.
+understood, and it is written whole, as that of another control would be; so is one in which a line
+cannot be written back, if all of it is understood.
 """
 
 from __future__ import annotations
@@ -36,6 +37,8 @@ class Plan(Protocol):
     def words(self) -> str: ...  # noqa: D102
     @property
     def copies(self) -> bool: ...  # noqa: D102
+    @property
+    def whole(self) -> str: ...  # noqa: D102
 
 
 def check_written(dialect: type[Dialect]) -> None:
@@ -70,7 +73,12 @@ def writes_back(plan: Plan) -> bool:
     positions, or whose path it is: contours that are resolved have other moves.
     """
     same = plan.source is plan.target and getattr(plan.source.translator, "writes", False)
-    if not same or plan.text_passes or any(step.demands.resolves for step in plan.passes):
+    if (
+        not same
+        or plan.whole
+        or plan.text_passes
+        or any(step.demands.resolves for step in plan.passes)
+    ):
         return False
     return stamp_of(plan.passes, plan.context, plan.words) is None
 

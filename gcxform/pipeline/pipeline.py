@@ -14,7 +14,7 @@ from pathlib import Path
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import told_open
 from gcxform.contract.passes import Pass, TextPass
-from gcxform.diagnostics import InputError, UsageError
+from gcxform.diagnostics import InputError, SpellingError, UsageError
 from gcxform.dialect.dialect import Dialect, NumberFormat
 from gcxform.flow.by_itself import is_subprogram
 from gcxform.machine.machine import Machine
@@ -167,13 +167,41 @@ class Pipeline(Plan):
                 from gcxform.pipeline.subprogram import run_subprogram
 
                 return run_subprogram(self, source, sink, verify, source_map, tell)
-            run = Run(self, source, verify)
             try:
-                run.over(out, tell)
+                run = self._run_over(source, verify, out, tell)
             except InputError as error:
                 raise InputError(tuple(told_open(error.diagnostics, self.to_fill_in))) from None
             run.check_growth(out)
         return certificate(run, out)
+
+    def _run_over(self, source: Source, verify: str, out: Output, tell: Progress) -> Run:
+        """Return a run that is over; of a program whose lines cannot all be written back, whole.
+
+        Of one that is refused that way, too, the line is told.
+        """
+        run = Run(self, source, verify)
+        try:
+            run.over(out, tell)
+        except SpellingError as line:
+            (why, *_) = line.diagnostics
+            out.lines_in = 0
+            try:
+                whole = Run(replace(self, whole=_told(line, source)), source, verify)
+                whole.over(out, tell)
+            except InputError as other:
+                message = f"{why.hint}; written whole it is refused, too: {_told(other, source)}"
+                raise InputError((replace(why, hint=message),)) from None
+            return whole
+        return run
+
+
+def _told(error: InputError, source: Source) -> str:
+    """Return what an error says first, with its line."""
+    (first, *_) = error.diagnostics
+    if first.where is None:
+        return first.message
+    file = "" if first.where.file == source.name else f" of {first.where.file}"
+    return f"line {first.where.line}{file}: {first.message}"
 
 
 def _machine(file: Path, registry: Registry) -> Machine:

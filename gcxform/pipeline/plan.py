@@ -77,6 +77,8 @@ class Plan:
     m_codes  M codes of the source, and what takes the place of each in the output
     drop     codes of the source that are left out
     inert    M codes of the target that leave its axes where they stand
+    whole    why a program in a language of its own is not written back line by line; nothing
+             where it is
     chord_error  mm within which splines become lines without a step; 0: they stay
     told     takes what each step changes, for who asks why lines differ; None: nobody does
     """
@@ -102,6 +104,7 @@ class Plan:
     drop: frozenset[str] = frozenset()
     inert: frozenset[str] = frozenset()
     chord_error: float = 0.0
+    whole: str = ""
 
     def __post_init__(self) -> None:
         for name, value in self._taken().items():

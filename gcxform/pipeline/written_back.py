@@ -119,7 +119,10 @@ class SpelledOut:
     def of(cls, plan: Plan, given: Source, source: Source, marks: Marks) -> SpelledOut | None:
         """Return what writes a program in another language; None where that is one of words."""
         kind = getattr(plan.target.translator, "speller", None)
-        return None if kind is None or plan.copies else cls(plan, given, source, kind, marks)
+        if kind is None or plan.copies:
+            return None
+        why = (f"the whole program: {plan.whole}",) if plan.whole else ()
+        return cls(plan, given, source, kind, marks, why=why)
 
     @property
     def lines_read(self) -> int:
@@ -143,6 +146,8 @@ class SpelledOut:
             self.plan.machine_reading.asides,
             self._seals,
         )
+        other = b"".join(self._others)
+        text, of = text + other, [*of, *[of[-1] if of else 0] * len(self._others)]
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
         return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
@@ -150,6 +155,17 @@ class SpelledOut:
     def sealed(self, text: bytes) -> bytes:
         """Return a proved program with the digits of its seal."""
         return sealed_anew(text, self.marks.seal) if self._seals else text
+
+    @cached_property
+    def _others(self) -> list[bytes]:
+        """Lines of other programs in the file, in the same language."""
+        from gcxform.flow.translated import Translated
+
+        if not (self.plan.machine_reading.asides and isinstance(self.source, Translated)):
+            return []
+        lines, end = self.source.lines, b"\r\n" if b"\r\n" in self._blocks else b"\n"
+        others = self.source.translator.others
+        return [lines[k].encode("latin-1") + end for other in others for k in other]
 
     @cached_property
     def _blocks(self) -> bytes:

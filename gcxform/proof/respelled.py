@@ -8,10 +8,16 @@ block is compared with all modes in force behind it, so it does not matter which
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 
-from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
+from gcxform.diagnostics import (
+    Diagnostic,
+    GcxformError,
+    Location,
+    SpellingError,
+    VerificationError,
+)
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.translated import Translated, translated
 from gcxform.modal.state import Reading
@@ -22,6 +28,7 @@ WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
 HINT = "nothing was written; this is a bug of gcxform"
 SPELL_HINT = "let the CAM write plain moves in its place, or write for another dialect"
 KEPT_HINT = "state the mode in the block itself, or before it what the rest of the program is in"
+TURN = "G", Decimal(68)
 Said = tuple[tuple[tuple[str, Decimal], ...], tuple[str, ...], tuple[tuple[str, str], ...]]
 """The words of a block, its comments, and the codes in force behind it, by group."""
 
@@ -56,19 +63,19 @@ def check_respelled(
         raise _wrong(found, more[0])
 
 
-def _wrong(found: Translated, block: int) -> InputError:
+def _wrong(found: Translated, block: int) -> SpellingError:
     """Return the error about a line that says something else than its block."""
     line = found.line_of(block + 1) if block >= 0 else len(found.lines)
     text = found.lines[line - 1] if found.lines else ""
     where = Location(found.name, line, 1, text, max(1, len(text.rstrip())))
     message = "what this line became cannot be said in its language"
-    return InputError((Diagnostic("GX501", message, where, SPELL_HINT),))
+    return SpellingError((Diagnostic("GX501", message, where, SPELL_HINT),))
 
 
 def check_kept(source: Translated, blocks: Iterable[bytes], dialect: type[Dialect]) -> None:
     """Check that what is kept as it stands is executed in the modes in which it was programmed.
 
-    Raises InputError.
+    Raises SpellingError.
     """
     code, blocks = source.translator.kept, [*blocks]
     if blocks == source.text.splitlines():
@@ -89,7 +96,7 @@ def check_kept(source: Translated, blocks: Iterable[bytes], dialect: type[Dialec
             text = source.lines[line - 1]
             where = Location(source.name, line, 1, text, max(1, len(text.rstrip())))
             message = f"this is kept as it stands, and would be executed in {'; '.join(changed)}"
-            raise InputError((Diagnostic("GX501", message, where, KEPT_HINT),))
+            raise SpellingError((Diagnostic("GX501", message, where, KEPT_HINT),))
 
 
 def _changed(one: Said, other: Said) -> list[tuple[tuple[str, str], tuple[str, str]]]:
@@ -117,7 +124,15 @@ def said_by(blocks: Iterable[str], dialect: type[Dialect]) -> Iterator[tuple[int
                 in_force = tuple(sorted(modes.items()))
         comments = tuple(COMMENT.findall(block))
         if words or comments:
-            yield number, (tuple(sorted(words)), comments, in_force)
+            plane = not dialect.arc_rule.names_plane or _in_plane(modes, words)
+            counts = in_force if plane else tuple(m for m in in_force if m[0] != "plane")
+            yield number, (tuple(sorted(words)), comments, counts)
+
+
+def _in_plane(modes: Mapping[str, str], words: Iterable[tuple[str, Decimal]]) -> bool:
+    """Whether the plane matters to a block: that of an arc, a contour, a cycle, a turn."""
+    straight = modes["motion"] in ("G0", "G1") and modes["cutter-comp"] == "G40"
+    return not straight or TURN in words
 
 
 class _Modal(dict[str, tuple[str, str]]):

@@ -66,6 +66,8 @@ class Blocks(gx.Translator):
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError for what is not read."""
         self.places.arrive()
+        named = [each for each in items if each.kind == "header" and self.reading.asides]
+        head = [gx.Speller.along(each.name.strip()) for each in named]
         number, items = self._without_marks(items)
         items = self.cartesian(items)
         preset = self.preset(items)
@@ -77,7 +79,7 @@ class Blocks(gx.Translator):
             blocks = [*self._block(items)]
         self.plainly = not (self.bars or self.machine or self.shifted)
         self.places.note(items)
-        return [f"{number}{blocks[0]}", *blocks[1:]] if blocks else []
+        return [*head, f"{number}{blocks[0]}", *blocks[1:]] if blocks else head
 
     def _without_marks(self, items: Sequence[gx.Item]) -> tuple[str, list[gx.Item]]:
         """Return the sequence number, and what stands behind it and the labels."""

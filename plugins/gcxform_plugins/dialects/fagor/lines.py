@@ -54,6 +54,8 @@ class Lines(gx.Speller):
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         asides, comments, words = self.heard(block)
+        if asides and asides[0].startswith("%"):
+            self.name = asides.pop(0)[1:]
         if SEMI_ROUNDED in asides:
             words = [each for each in words if each != ("G", "64")]
         found = [*asides, *self._said(words)]

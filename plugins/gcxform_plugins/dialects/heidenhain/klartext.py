@@ -148,7 +148,8 @@ class Klartext(Planes):
             scale = MM if self.inch and axis not in "ABC" else 1.0
             self.place[axis] = exact(Decimal(repr(value / scale)))
         own = OWN_NAME.search(self.lines[self.line])
-        name = [gx.Speller.aside(f"{BEGIN_PGM}{own[1]}")] if own and self.reading.asides else []
+        text = f"{BEGIN_PGM}{own[1] if own else ''}"
+        name = [gx.Speller.aside(text)] if self.reading.asides else []
         return [" ".join([f"{'G20' if self.inch else 'G21'} G17 G90 G94", *name])]
 
     def _check_continued(self) -> None:

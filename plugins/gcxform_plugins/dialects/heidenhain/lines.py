@@ -95,8 +95,8 @@ class Lines(gx.Speller):
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         asides, comments, words = self.heard(block)
-        if asides and asides[0].startswith(BEGIN_PGM):
-            self.name = asides.pop(0).removeprefix(BEGIN_PGM)
+        if asides and asides[0].startswith(BEGIN_PGM.rstrip()):
+            self.name = asides.pop(0)[len(BEGIN_PGM) :]
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
         if asides and IN_INCHES in words and not self.inch:

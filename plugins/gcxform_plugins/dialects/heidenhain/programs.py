@@ -48,7 +48,7 @@ AGAINST = {
     "XY_ARCS": ARCS,
 }
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
-NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+[ \t]*)?")
+NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+([ \t]*))?")
 FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
 STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
@@ -238,7 +238,7 @@ class Programs(Runs):
         for k in range(0, len(parts), 2):
             line = parts[k]
             if line.strip() and not continued:
-                parts[k] = NUMBER.sub(lambda m: f"{m[1]}{next(count)} ", line, count=1)
+                parts[k] = NUMBER.sub(lambda m: f"{m[1]}{next(count)}{m[2] or ' '}", line, count=1)
             continued = line.rstrip().endswith("~")
         return "".join(parts)
 

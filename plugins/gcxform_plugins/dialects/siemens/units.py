@@ -21,6 +21,8 @@ HEADER = re.compile(
 MAIN, PROGRAMS = "MPF", ("MPF", "SPF")
 DATA = "{} in the same file are data of the control, which are not read"
 IDLE = "{} in the same file are not called, and stay as they are"
+CALLED = "{} in the same file are written out where they are called, and stay as they are"
+LEFT = "stay as they are", "are left out: they are programs of a SINUMERIK"
 APART = "keep each program in its own file"
 
 
@@ -40,6 +42,7 @@ class Units(Calls):
             self.heads |= {lines.start for _, _, lines in self.units}
             self.main = next((u for _, kind, u in self.units if kind == MAIN), self.units[0][2])
             self.at = self.main.start
+            self.others = tuple(u for _, _, u in self.units if u != self.main)
             self.annexing()
             self.lines.append("")
 
@@ -103,14 +106,27 @@ class Units(Calls):
 
     def closing(self) -> Iterator[str]:
         """Say what was not executed of the file."""
-        others = [u for u in self.units if u[2].start in self.heads - self.called - {*self.main}]
-        for text, programs in ((IDLE, True), (DATA, False)):
-            names = [f"{name}_{kind}" for name, kind, _ in others if (kind in PROGRAMS) == programs]
-            if names:
-                self.assumed[text.format(", ".join(names))] = None
+        anew = self.reading.asides
+        for text, chosen in (
+            (IDLE if anew or self.reading.stays else IDLE.replace(*LEFT), self._others(True)),
+            (DATA, self._others(False)),
+            (CALLED, self._others(True, called=True) if anew else []),
+        ):
+            if chosen:
+                self.assumed[text.format(", ".join(chosen))] = None
         if self.left_out:
             self.assumed[LEFT_OUT.format(", ".join(sorted(self.left_out)))] = None
         return iter(())
+
+    def _others(self, programs: bool, called: bool = False) -> list[str]:
+        """Return names of other programs of the file, or of data."""
+        return [
+            f"{name}_{kind}"
+            for name, kind, lines in self.units
+            if lines in self.others
+            and (kind in PROGRAMS) == programs
+            and (lines.start in self.called) == called
+        ]
 
 
 def units_of(lines: Sequence[str]) -> Iterator[tuple[str, str, range]]:
