@@ -161,6 +161,7 @@ class Blocks(Contours):
 
     def _before(self, line: Line) -> Iterator[str]:
         """Yield the blocks of tools and lengths, and take another work offset."""
+        yield from line.ahead
         if line.tool or line.changes is not None or line.edge is not None:
             yield from self._tooled(line)
         if self.owed and line.machine is None and not line.says_only("tool", "tool_name", "others"):

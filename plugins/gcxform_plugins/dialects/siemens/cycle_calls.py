@@ -32,7 +32,7 @@ class CycleCalls(Statements):
                 self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
             self._one(line, "alone", item)
-            if name in TELLING or name == "CYCLE832":
+            if name in TELLING or name in ("CYCLE832", "FGROUP"):
                 self._goes_along(line, item, "", self.text_of(item))
         else:
             why = WHY.get(name, f"{name}(...) is not read")
@@ -43,7 +43,8 @@ class CycleCalls(Statements):
         if name == "CYCLE800":
             return given == [""] or self._stands_still(given)
         steers = name == "CYCLE832" and cycles.keeps_path(given, self.following)
-        return name in TELLING or steers
+        usual = name == "FGROUP" and sorted(given) in ([""], [*LINEAR])
+        return name in TELLING or steers or usual
 
     def _stands_still(self, given: Sequence[str]) -> bool:
         """Whether a swivel to nowhere turns no axis: two of them at least are known to be at 0."""

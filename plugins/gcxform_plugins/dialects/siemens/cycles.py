@@ -16,8 +16,12 @@ PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
 NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
 SECONDS = "10"
 """AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
-AMODE = 2
-"""Its place behind the last argument of the hole itself."""
+MODES = 3
+"""GMODE, DMODE and AMODE, behind the last argument of the hole itself."""
+PLANES = {"Z": "1", "Y": "2", "X": "3"}
+"""DMODE where it names the plane, by the axis across that."""
+ABSOLUTE = ("2", "12")
+"""AMODE where a depth is absolute, by its ones."""
 DIGITS = re.compile(r"[0-9]{1,7}")
 QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
 NO_RETRACT, PLAIN_MODE = "0", re.compile(r"[0-9]*")
@@ -59,9 +63,24 @@ class CycleError(Exception):
 
 def drilling(name: str, given: Sequence[str], axis: str) -> Drilling:
     """Return the hole of a cycle. Raises CycleError."""
-    at = _levels(given)
-    steps = READ[name](list(given[5:]), at)
+    at, rest = _levels(given), _without_modes(name, given, axis)
+    steps = READ[name](rest, at)
     return Drilling(axis, (("0", at.start, ""), *steps, ("0", at.back, "")), name == "CYCLE85")
+
+
+def _without_modes(name: str, given: Sequence[str], axis: str) -> list[str]:
+    """Return what stands behind the depth, without DMODE and AMODE that change nothing.
+
+    Their ones are the plane and how the depth is meant (public NCXchange specification of Siemens
+    programs). The call has to have all arguments: some leave the dwell of CYCLE81 out.
+    """
+    rest, at = list(given[5:]), OF_HOLE.get(name, len(given))
+    plane, how = [*rest[at + 1 : at + MODES], "", ""][:2]
+    if plane == PLANES[axis]:
+        rest[at + 1] = "0"
+    if how in ABSOLUTE and given[3] and not given[4]:
+        rest[at + 2] = SECONDS
+    return rest
 
 
 class Levels(NamedTuple):
@@ -96,21 +115,24 @@ def _depth(absolute: str, below: str, level: Decimal, *names: str) -> str:
 
 def _nothing_more(rest: Sequence[str]) -> None:
     """Refuse arguments behind those that are read: GMODE, DMODE, AMODE. Raises CycleError."""
-    others = [x for k, x in enumerate(rest) if not (k == AMODE and x == SECONDS)]
+    others = [x for k, x in enumerate(rest) if not (k == MODES - 1 and x == SECONDS)]
     if any(x and not (NUMBER.fullmatch(x) and Decimal(x) == 0) for x in others):
         raise CycleError("an argument behind the depth is not read")
 
 
 def _drilled(rest: list[str], at: Levels) -> Steps:
-    """CYCLE81: feed to the depth."""
+    """CYCLE81: feed to the depth; with four arguments behind that, the first is a dwell."""
+    if len(rest) > MODES:
+        return _with_dwell(rest, at)
     _nothing_more(rest)
     return (("1", at.bottom, ""),)
 
 
 def _with_dwell(rest: list[str], at: Levels) -> Steps:
     """CYCLE82: feed to the depth, dwell."""
-    dwell = _seconds(rest.pop(0)) if rest else ""
-    return (*_drilled(rest, at), *_wait(dwell))
+    dwell = _seconds(rest[0]) if rest else ""
+    _nothing_more(rest[1:])
+    return (("1", at.bottom, ""), *_wait(dwell))
 
 
 def _bored(rest: list[str], at: Levels) -> Steps:
@@ -167,6 +189,8 @@ def _wait(seconds: str) -> Steps:
     return (("4", seconds, ""),) if seconds else ()
 
 
+OF_HOLE = {"CYCLE81": 1, "CYCLE82": 1, "CYCLE89": 1, "CYCLE85": 3}
+"""How many arguments of the hole itself stand behind the depth."""
 READ = {
     "CYCLE81": _drilled,
     "CYCLE82": _with_dwell,

@@ -78,9 +78,12 @@ kept as it stands, with all that is lost behind it.
 | GROUP_BEGIN, GROUP_END, WORKPIECE | left out: they are for the screen | |
 | M40 to M45 | left out: the gear of the spindle | PM 105 |
 | all four, where moves are written anew for the same control | they go along | |
+| FGROUP(X,Y,Z), FGROUP() | what F is of anyway: left out, or goes along; others: refused | F 105 |
+| M7 M8 in one block | both are on: two blocks | [K] |
 | CYCLE800 | only alone, empty, or without angles, with two rotary axes at 0 | SW 481 |
 | CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
+| GMODE, DMODE, AMODE | 0; the plane in force; absolute, seconds; else refused | X |
 | CYCLE89, CYCLE85 | out at the feed, at RFF; behind CYCLE85 F must be programmed again | C81 |
 | CYCLE83 | alike strokes; only with VARI, and DIS1 or VRT, and without DAM | C81 |
 | SPOS=0, G331, G332, M3 S in four lines | a tap in step with the spindle: `tapping.py` | cncforum |
@@ -132,7 +135,7 @@ Manuals of Siemens: JA and JP Job planning 03/2006 and 07/2010, PM NC programmin
 Operating 05/2017, T Turning 01/2017, K2 Frames and 828D Basic functions 09/2011, ISO Milling
 04/2007, W1 Tool offset 11/2006, TR Transformations 06/2019 (A5E47435470B), R2 Axes and spindles
 06/2019 (A5E47437747B), SW Swivelling 03/2013; C81 helmancnc.com on CYCLE81; cncforum.net on
-G331. [K]: not looked up.
+G331; X the public specification of NCXchange for Siemens. [K]: not looked up.
 
 To the same control, by passes that keep positions, a line stays that cannot be said in blocks:
 

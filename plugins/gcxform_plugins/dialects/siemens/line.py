@@ -28,7 +28,8 @@ class Line:
               same of I J K, and I1 J1 K1
     named     CR, TURN, AR, AP, RP, ANG: number and item;  onwards: AP turns on from the last one
     corner    RND, RNDM, CHR, CHF, FRC: number and item;  behind: the blocks that cut a corner
-    others    S and M words;  asides: what goes along in the same language, as it was programmed
+    others    S and M words;  ahead: those of blocks before this one
+    asides    what goes along in the same language, as it was programmed
     alone     what stands for nothing, and in a block of its own
     act       what follows the tip, or stops: M128, M129
     """
@@ -45,6 +46,7 @@ class Line:
     behind: list[str] = field(default_factory=list)
     feed: str = ""
     others: list[str] = field(default_factory=list)
+    ahead: list[str] = field(default_factory=list)
     asides: list[str] = field(default_factory=list)
     tool: str = ""
     tool_name: str = ""

@@ -55,6 +55,8 @@ WHY = {
 AXES = LINEAR + ROTARY
 POLAR_WAYS = frozenset((("AP", ABSOLUTE), ("RP", ABSOLUTE), ("AP", STEP)))
 """Ways of polar words that are read: AP=IC() turns on from the last AP (PM 175)."""
+COOLANTS = {7: 8, 8: 7}
+"""Both may be on, and both stand in a block of several M functions."""
 OWN = frozenset((128, 129, 9000, 9001))
 """The M codes with which blocks say TRAORI, TRAFOOF and what is kept: elsewhere the machine's."""
 PLAIN = "write plain numbers, or let the CAM write them"
@@ -169,7 +171,9 @@ class Statements(gx.Translator):
         elif letter == "M" and number.isdigit() and int(number) in GEARS:
             line.asides.append(f"M{number}")
         elif letter == "M" and number.isdigit() and int(number) not in OWN:
-            line.others.append(f"M{number}")
+            said = {int(word[1:]) for word in line.others if word[0] == "M"}
+            beside = COOLANTS.get(int(number)) in said
+            (line.ahead if beside else line.others).append(f"M{number}")
         elif letter == "T" and number.isdigit():
             self._once(line, item, "T")
             line.tool = str(int(number))
