@@ -91,6 +91,7 @@ from gcxform.guess import guess_dialect as guess_dialect
 from gcxform.machine.chain import Chain as Chain
 from gcxform.machine.chain import Rotary as Rotary
 from gcxform.machine.chain import chain_of as chain_of
+from gcxform.machine.control import NumberSetting as NumberSetting
 from gcxform.machine.control import Setting as Setting
 from gcxform.machine.formats import ControlFiles as ControlFiles
 from gcxform.machine.inverse import Attitudes as Attitudes

@@ -19,6 +19,7 @@ ANSWERS: dict[str, Any] = {
     "basic-frames": "none",
     "orientation-path": "angles",
     "edge-after-tool-change": 1,
+    "preset": 2,
     "units": "mm",
     "argument-list": "II",
     "tip-at-start": "off",

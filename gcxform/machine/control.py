@@ -69,6 +69,23 @@ class Setting:
 
 
 @dataclass(frozen=True)
+class NumberSetting(Setting):
+    """A setting that is a whole number, such as a line of a table."""
+
+    kind: ClassVar[str] = "a whole number"
+
+    def read(self, raw: object) -> int:
+        """Return the number; ValueError for what is none."""
+        if isinstance(raw, bool) or not isinstance(raw, int | float) or raw < 0 or raw % 1:
+            raise ValueError("expected a whole number")
+        return int(raw)
+
+    def schema(self) -> dict[str, Any]:
+        """Return its JSON Schema."""
+        return {"type": "integer", "minimum": 0, "description": self.help}
+
+
+@dataclass(frozen=True)
 class _Code(Setting):
     """A setting that names an M code of the machine's own."""
 

@@ -26,7 +26,10 @@ ROTATION = re.compile(rf"(I?)ROT\s*{NUMBER}\s*")
 TURNS = re.compile(r"TRANS\s+(ROTATION|MIRROR)\s+(?:(RESET)|AXIS\s+(.*?)|(I?ROT.*?))\s*")
 SCALE = re.compile(rf"SCL\s*({VALUE})")
 UNTURNED = "end the rotation or the mirror image before"
-PLACE = "leave this block out, if the place of G54 in the machine file is that of this preset"
+PLACE = (
+    "say preset = {} in [control], if the place of G54 in the machine file is that of this preset, "
+    "and it is not turned"
+)
 PRESET = "preset {} of cycle 247 is where the program counts from, and G54 stands for it"
 
 
@@ -215,17 +218,19 @@ class Datums(Parameters):
         ends = "".join(f" {axis}+0" for axis in self._unshifted(given, blocks))
         return [*blocks, *(self.along(f"TRANS DATUM AXIS{ends}") if ends else ())]
 
-    def preset(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
+    def preset(self, item: gx.Item, given: dict[int, Decimal]) -> list[str]:
         """Cycle 247: the preset, if all of the program counts from it; once more it is the same."""
-        number = told.get(339)
-        if number is None or len(told) > 1:
+        number = given.get(339)
+        if number is None or len(given) > 1:
             self.refuse("a preset without its number", item)
         another = number != self.counts_from and (self.moved or self.counts_from is not None)
         turned = self.turn != 0 or self.mirrored != ""
         if another or turned or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
-        if number and not self.reading.stays and "G54" in self.reading.work_offsets:
-            self.refuse(f"{exact(number)} of the presets, each at its own place", item, PLACE)
+        told = self.reading.control.get("preset") == number
+        if number and not (told or self.reading.stays) and "G54" in self.reading.work_offsets:
+            name = exact(number)
+            self.refuse(f"{name} of the presets, each at its own place", item, PLACE.format(name))
         self.counts_from = number
         if number:
             self.assumed[PRESET.format(exact(number))] = None

@@ -71,6 +71,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | an axis that turns under PLANE SPATIAL | refused: words allow for it | 530 technical, p. 761 |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
+| the place of G54 beside it | refused, but for `[control] preset` of that number | [K] |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |
@@ -139,6 +140,9 @@ class Heidenhain(gx.Dialect):
         9001: gx.MCode("along", takes="P"),
         9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
+    settings = (
+        gx.NumberSetting("preset", "heidenhain: which preset of cycle 247 G54 of this file is"),
+    )
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     cutter_comp = gx.CutterComp(entry="next")
