@@ -21,7 +21,6 @@ class ArcRule:
     third     what is done with a centre word along the normal of the plane: beside one in the plane
               it is "dropped"; where it is 0 it is taken ("zero"); "": it is refused
     turns_axes rotary axes may turn beside an arc; otherwise how they do so is not certain: refused
-    names_plane an arc names the axes of its plane by those of its centre: none is in force
     centres_open  how I, J and K count is a setting of the control, until G90.1 or G91.1 says it
     """
 
@@ -36,7 +35,6 @@ class ArcRule:
     circle: str = ""
     third: str = ""
     turns_axes: bool = True
-    names_plane: bool = False
     centres_open: bool = False
 
 

@@ -6,6 +6,7 @@ import re
 from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterable
+from typing import ClassVar
 
 COMMENT = re.compile(r"\(([^()]*)\)")
 WORD = re.compile(r"([A-Z])([-+]?[0-9.]+)")
@@ -39,8 +40,10 @@ class Speller(ABC):
     block that was heard last, if its program called it so, `tool_told` what is told of it there.
     `asides`: what goes along as it was
     programmed stands in comments, which nobody else than a translator can have written.
+    `names_planes`: an arc names the axes of its plane by those of its centre, and none is in force.
     """
 
+    names_planes: ClassVar[bool] = False
     inert: frozenset[str] = frozenset()
     asides: bool = False
     tool_name: str = ""

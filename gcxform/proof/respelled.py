@@ -113,6 +113,7 @@ def said_by(blocks: Iterable[str], dialect: type[Dialect]) -> Iterator[tuple[int
     """Yield what blocks say, with their numbers; those that only state modes are left out."""
     modes, codes = dict(dialect.initial), _Modal(dialect)
     in_force = tuple(sorted(modes.items()))
+    bare = getattr(getattr(dialect.translator, "speller", None), "names_planes", False)
     for number, block in enumerate(blocks):
         words = []
         for letter, digits in WORD.findall(COMMENT.sub("", block)):
@@ -124,7 +125,7 @@ def said_by(blocks: Iterable[str], dialect: type[Dialect]) -> Iterator[tuple[int
                 in_force = tuple(sorted(modes.items()))
         comments = tuple(COMMENT.findall(block))
         if words or comments:
-            plane = not dialect.arc_rule.names_plane or _in_plane(modes, words)
+            plane = not bare or _in_plane(modes, words)
             counts = in_force if plane else tuple(m for m in in_force if m[0] != "plane")
             yield number, (tuple(sorted(words)), comments, counts)
 

@@ -306,7 +306,7 @@ MUTATIONS = (
     Mutation(
         "klartext: a compensated program has another name",
         LINES,
-        "self.name = asides.pop(0).removeprefix(BEGIN_PGM)",
+        "self.name = asides.pop(0)[len(BEGIN_PGM) :]",
         "asides.pop(0)",
         f"{COMPENSATED}-by-name]",
     ),

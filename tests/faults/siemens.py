@@ -914,8 +914,8 @@ MUTATIONS = (
     Mutation(
         "siemens: which way a rotary axis turns is gone with an arc",
         "plugins/gcxform_plugins/dialects/siemens/in_place.py",
-        '"XYZIJK", "CR"',
-        '"XYZABCIJK", "CR"',
+        '"XYZIJKF", "CR"',
+        '"XYZABCIJKF", "CR"',
         f"{CASES}[segment/siemens-own-arcs-turned]",
     ),
     Mutation(
@@ -1432,7 +1432,7 @@ MUTATIONS = (
     Mutation(
         "siemens: a dwell of ten seconds is a mode",
         CYCLES,
-        "if not (k == AMODE and x == SECONDS)",
+        "if not (k == MODES - 1 and x == SECONDS)",
         "if not (k >= 0 and x == SECONDS)",
         f"{LINES_BESIDE}::test_seconds_are_said_in_one_place",
     ),

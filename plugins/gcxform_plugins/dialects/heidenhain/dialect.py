@@ -146,7 +146,7 @@ class Heidenhain(gx.Dialect):
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     cutter_comp = gx.CutterComp(entry="next")
-    arc_rule = gx.ArcRule(absolute=0.016, turns="P", names_plane=True)
+    arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
         follows_at_start=False,  # a new program resets M128: TNC 410/426/430, ISO, p. 169

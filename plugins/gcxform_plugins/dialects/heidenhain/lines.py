@@ -54,6 +54,8 @@ class Lines(gx.Speller):
     side    that of the last line;  waits: what was said since, for the next line in X and Y
     """
 
+    names_planes = True
+
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(re.sub(r"[^A-Z0-9_]", "", name.upper())[:16] or "A", inch)
         self.rounded: dict[str, float] = {}
