@@ -162,7 +162,7 @@ MUTATIONS = (
     Mutation(
         "siemens: CYCLE832 is left out for the same control",
         CYCLE_CALLS,
-        'if name in TELLING or name == "CYCLE832":',
+        'if name in TELLING or name in ("CYCLE832", "FGROUP"):',
         "if name in TELLING:",
         f"{CASES}[dialects/siemens/compensated-with-cycle832]",
     ),
