@@ -5,6 +5,8 @@ Where a piece would be shorter than `min-length`, equal ones that hold the toler
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 import gcxform as gx
@@ -25,6 +27,26 @@ NO_CHORD = 1e-6  # mm
 UNEVEN = 1e-4  # mm; by so much the radii of an arc may differ more than they did
 MARGIN = 0.9  # of the tolerance: what looking at points, and not along the curve, may miss
 LONGEST = 1.9 * np.pi  # rad; rounded, the ends of a longer piece may change places
+
+
+@dataclass(frozen=True)
+class Sent:
+    """Where pieces of arcs are sent, (n, 3) mm in the program's coordinates.
+
+    first, last    the ends of the pieces
+    second, third  points on the way; `third` is the end of a piece that is not about a turn
+    shift          command minus target, in the mean of both ends
+    """
+
+    first: Floats
+    second: Floats
+    third: Floats
+    last: Floats
+    shift: Floats
+
+    def take(self, which: Ints) -> Sent:
+        """Return that of some pieces."""
+        return Sent(*(each[which] for each in vars(self).values()))
 
 
 class ArcFitter:
@@ -143,27 +165,41 @@ class ArcFitter:
         """Return the pieces that an arc cannot stand for."""
         if not len(row):
             return np.empty(0, np.bool_)
-        far = self._residual(row, low, high) > self.limit
-        return np.asarray(far | self._goes_round(row, low, high))
+        sent = self._sent(row, low, high)
+        far = self._residual(row, low, high, sent) > self.limit
+        return np.asarray(far | self._goes_round(row, low, high, sent))
 
-    def _goes_round(self, row: Ints, low: Floats, high: Floats) -> Flags:
+    def _goes_round(self, row: Ints, low: Floats, high: Floats, sent: Sent) -> Flags:
         """Return the pieces of about a turn whose ends are not one point: they would be lost."""
-        long = np.flatnonzero((high - low) * self.path.sweep[row] > LONGEST)
-        gap = self._command(row[long], high[long]) - self._command(row[long], low[long])
-        round_ones = np.zeros(len(row), np.bool_)
-        round_ones[long] = np.abs(gap).max(axis=1, initial=0.0) > 0.0
-        return round_ones
+        gap = np.abs(sent.last - sent.first).max(axis=1, initial=0.0)
+        return np.asarray(self._about_a_turn(row, low, high) & (gap > 0.0))
 
     def centres(self, row: Ints, low: Floats, high: Floats) -> Floats:
         """Return the centres (n, 3), in the program's coordinates, of pieces of arcs."""
-        centre = np.full((len(row), 3), np.nan)
         if not len(row):
-            return centre
-        share = np.where((high - low) * self.path.sweep[row] > LONGEST, 1 / 3, 1 / 2)
-        first = self._command(row, low)
-        second = self._command(row, low + (high - low) * share)
-        third = self._command(row, np.where(share < 0.5, low + (high - low) * 2 / 3, high))
-        shift = (self.window.correction(row, low) + self.window.correction(row, high)) / 2
+            return np.empty((0, 3))
+        return self._centres(row, low, high, self._sent(row, low, high))
+
+    def _sent(self, row: Ints, low: Floats, high: Floats) -> Sent:
+        """Return where pieces are sent: all points at once, for to solve one takes as long."""
+        count, turns = len(row), np.flatnonzero(self._about_a_turn(row, low, high))
+        middle = low + (high - low) / 2
+        middle[turns] = (low + (high - low) / 3)[turns]
+        later = (low + (high - low) * 2 / 3)[turns]
+        rows = np.concatenate([row, row, row, row[turns]])
+        target, command = self._command(rows, np.concatenate([low, middle, high, later]))
+        first, second, last = command[: 3 * count].reshape(3, count, 3)
+        third = last.copy()
+        third[turns] = command[3 * count :]
+        moved = command - target
+        return Sent(first, second, third, last, (moved[:count] + moved[2 * count : 3 * count]) / 2)
+
+    def _about_a_turn(self, row: Ints, low: Floats, high: Floats) -> Flags:
+        return np.asarray((high - low) * self.path.sweep[row] > LONGEST)
+
+    def _centres(self, row: Ints, low: Floats, high: Floats, sent: Sent) -> Floats:
+        centre = np.full((len(row), 3), np.nan)
+        about_a_turn = self._about_a_turn(row, low, high)
         size, last, _ = gx.radius_and_angle(self.path, row)
         sag = size * (1 - np.cos((high - low) * self.path.sweep[row] / 2))
         uneven = np.where(high - low < 1.0, -np.inf, np.abs(last - size) + UNEVEN)
@@ -172,24 +208,25 @@ class ArcFitter:
             if not len(here):
                 continue
             axes, normal = np.array(plane.axes[:2]), plane.axes[2]
-            points = [point[np.ix_(here, axes)] for point in (first, second, third)]
+            sent_to = (sent.first, sent.second, sent.third)
+            points = [point[np.ix_(here, axes)] for point in sent_to]
             fitted = gx.circle_through(*points)
-            moved = (self.path.centre[row] + shift)[np.ix_(here, axes)]
+            moved = (self.path.centre[row] + sent.shift)[np.ix_(here, axes)]
             ends = (np.hypot(*(point - moved).T) for point in points[::2])
-            far = (np.abs(np.subtract(*ends)) > uneven[here]) & (share[here] == 0.5)
+            far = (np.abs(np.subtract(*ends)) > uneven[here]) & ~about_a_turn[here]
             moved = np.where(far[:, None], _as_far(moved, *points[::2]), moved)
             flat = ~np.isfinite(fitted).all(axis=1) | (sag[here] < FLAT)
             centre[np.ix_(here, axes)] = np.where(flat[:, None], moved, fitted)
-            centre[here, normal] = first[here, normal]
+            centre[here, normal] = sent.first[here, normal]
         return centre
 
-    def _command(self, row: Ints, part: Floats) -> Floats:
-        """Return commands (n, 3), in the program's coordinates, for points of arcs."""
+    def _command(self, row: Ints, part: Floats) -> tuple[Floats, Floats]:
+        """Return points of arcs (n, 3) and their commands, in the program's coordinates."""
         offset = self.window.offset_of(row)
-        target = gx.points_on_arcs(self.path, row, part) + offset
-        return self.window.command(target, row) - offset
+        target = gx.points_on_arcs(self.path, row, part)
+        return target, self.window.command(target + offset, row) - offset
 
-    def _residual(self, row: Ints, low: Floats, high: Floats) -> Floats:
+    def _residual(self, row: Ints, low: Floats, high: Floats, sent: Sent) -> Floats:
         """Return how far (mm) the machine is from the arcs when it is sent along fitted ones.
 
         Between two points that are looked at, a bend of the error adds at most the Lipschitz
@@ -199,19 +236,20 @@ class ArcFitter:
         length = size * self.path.sweep[row] * (high - low)
         count = np.clip(self.reach * length / (0.2 * self.limit), FEWEST, MOST).astype(np.int64)
         count = 2 ** np.ceil(np.log2(count)).astype(np.int64)
-        centre = self.centres(row, low, high)
+        centre = self._centres(row, low, high, sent)
         worst = np.zeros(len(row))
         for number in np.unique(count).tolist():
             members = np.flatnonzero(count == number)
             for piece in np.array_split(members, len(members) * number // AT_ONCE + 1):
-                worst[piece] = self._largest(
-                    row[piece], low[piece], high[piece], centre[piece], number
-                )
+                share = (high - low)[piece]
+                fitted = self._fitted(row[piece], share, centre[piece], sent.take(piece))
+                worst[piece] = self._largest(row[piece], low[piece], high[piece], fitted, number)
         return worst + self.reach * length / count / 2
 
-    def _largest(self, row: Ints, low: Floats, high: Floats, centre: Floats, number: int) -> Floats:
+    def _largest(
+        self, row: Ints, low: Floats, high: Floats, pieces: gx.Toolpath, number: int
+    ) -> Floats:
         """Return the largest distance of the machine from the arcs, at a number of points each."""
-        pieces = self._fitted(row, low, high, centre)
         every = np.repeat(np.arange(len(row)), number)
         part = np.tile((np.arange(number) + 0.5) / number, len(row))
         command = gx.points_on_arcs(pieces, 2 * every + 1, part)
@@ -250,13 +288,13 @@ class ArcFitter:
         off[turning] = np.sqrt(((actual - wanted)[turning] ** 2).sum(axis=1))
         return off
 
-    def _fitted(self, row: Ints, low: Floats, high: Floats, centre: Floats) -> gx.Toolpath:
+    def _fitted(self, row: Ints, share: Floats, centre: Floats, sent: Sent) -> gx.Toolpath:
         """Return the fitted pieces as arcs: row 2k + 1, after a row that leads to its start."""
         path = self.path.take(np.repeat(row, 2))
         end = np.array(path.end)
-        end[0::2, :3], end[1::2, :3] = self._command(row, low), self._command(row, high)
+        end[0::2, :3], end[1::2, :3] = sent.first, sent.last
         sweep = np.array(path.sweep)
-        sweep[1::2] *= high - low
+        sweep[1::2] *= share
         path = path.replace(end=end, sweep=sweep, centre=np.repeat(centre, 2, axis=0))
         return path.replace(sweep=gx.swept_anew(path))
 

@@ -67,11 +67,6 @@ class Window:
         """
         return self.commanded(target, self.place.tool_of(rows, part))
 
-    def correction(self, rows: Ints, part: Floats) -> Floats:
-        """Return command minus target (n, 3) at parts of the way of arcs."""
-        target = gx.points_on_arcs(self.path, rows, part) + self.offset_of(rows)
-        return self.command(target, rows) - target
-
     def commanded(self, target: Floats, tool: Floats | None) -> Floats:
         """Return what is written (n, 3) for targets in the table (n, 3), mm, for tools."""
         return self._actual(target, tool) if self.step.inverse else self._solved(target, tool)
