@@ -126,7 +126,11 @@ class Chain:
 
         `linear` (..., 3) are X, Y and Z. The tool axis is a unit vector from tip to spindle.
         """
-        return self.onto_workpiece(linear + self.arm(angles), angles), self.tool_axis(angles)
+        return self.tip_at(linear, angles), self.tool_axis(angles)
+
+    def tip_at(self, linear: Floats, angles: Floats) -> Floats:
+        """Return the tip (..., 3) alone, in mm in the frame of the workpiece."""
+        return self.onto_workpiece(linear + self.arm(angles), angles)
 
     def linear(self, tip: Floats, angles: Floats) -> Floats:
         """Return X, Y and Z (..., 3) that bring the tip to points of the workpiece."""

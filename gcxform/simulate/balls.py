@@ -56,7 +56,7 @@ def simulate_poses(
     the error of the linear axes. Raises UsageError for positions beyond the model (GX738).
     """
     generator = generator or np.random.default_rng(0)
-    tips = true.forward(plan.points, plan.degrees)[0]
+    tips = true.tip_at(plan.points, plan.degrees)
     balls = np.array([tips[plan.ball.index(name)] for name in plan.balls])
     stands = true.linear(balls[plan.index], plan.degrees)
     if model is not None:

@@ -148,5 +148,5 @@ def _tip(
             tool = np.zeros(3)  # along Z of the machine, where it makes no difference
         x, y, z = (gauge - tool).tolist()
         own = replace(chain, tip=(x, y, z))
-        found[here] = own.forward(at[here] + zero, angles[here])[0] - gauge - zero
+        found[here] = own.tip_at(at[here] + zero, angles[here]) - gauge - zero
     return found

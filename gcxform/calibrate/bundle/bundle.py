@@ -84,7 +84,7 @@ class Layout:
     def start(self) -> Floats:
         """Return the unknowns (k,) of the machine as it is believed to be."""
         found = np.zeros(len(self.names))
-        tips = self.chain.forward(self.poses.points, self.poses.degrees)[0]
+        tips = self.chain.tip_at(self.poses.points, self.poses.degrees)
         index = np.array(self.poses.index)
         first = 4 * len(self.chain.axes)
         for k in range(len(self.poses.balls)):

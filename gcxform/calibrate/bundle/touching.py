@@ -99,7 +99,7 @@ def _height(chain: Chain, poses: Poses, probing: Probing) -> tuple[float, bool]:
         message = "between the poses the head may turn past the horizontal"
         hint = "limit the axes of the head in the machine file, or allow less tilt"
         raise UsageError.one("GX491", message, hint=hint)
-    tips = chain.forward(poses.points, poses.degrees)[0]
+    tips = chain.tip_at(poses.points, poses.degrees)
     balls = np.array([tips[poses.ball.index(name)] for name in poses.balls])
     room, high = probing.radius + probing.clearance, chain.travel[2][1]
     over = least_height(chain, balls, poses.degrees, room)

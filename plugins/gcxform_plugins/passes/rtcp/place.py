@@ -163,7 +163,7 @@ class Place:
         """Return the positions (n, 3) of the tips where the axes stand at positions (n, 3)."""
 
         def follow(chain: gx.Chain, points: Floats, turned: Floats) -> Floats:
-            return np.asarray(chain.forward(points, turned)[0] - self.gauge + self._tool(chain))
+            return np.asarray(chain.tip_at(points, turned) - self.gauge + self._tool(chain))
 
         return self._by_tool(follow, axes, angles, rows)
 
