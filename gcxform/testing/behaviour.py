@@ -227,8 +227,8 @@ def _seen(dialect: type[Dialect], blocks: str, without: str) -> str | None:
 
 def _differ(dialect: type[Dialect], blocks: list[str], without: str) -> bool:
     """Whether two blocks do different things, or one of them is refused."""
-    seen, other = (_seen(dialect, block, without) for block in blocks)
-    return seen is None or other is None or seen != other
+    seen = _seen(dialect, blocks[0], without)
+    return seen is None or seen != _seen(dialect, blocks[1], without)
 
 
 Findings = Iterator[str]

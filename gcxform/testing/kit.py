@@ -182,7 +182,7 @@ class _PathCheck:
         label: str,
         path: Toolpath,
     ) -> Toolpath | None:
-        given, kept = locked(path), locked(path)
+        given = locked(path)
         here = f"{self.step.name}.{name} on {label!r}"
         try:
             result = function(given, self.context)
@@ -193,7 +193,7 @@ class _PathCheck:
         except Exception as error:
             change = "changes what it was given" if "read-only" in str(error) else "fails"
             raise AssertionError(f"{here} {change}: {type(error).__name__}: {error}") from error
-        changed = differs(given, kept, 0.0)
+        changed = differs(given, path, 0.0)
         assert not changed, f"{here} changes what it was given: {changed}"
         assert isinstance(result, Toolpath), f"{here} returns {type(result).__name__}"
         sizes = {len(getattr(result, column)) for column in COLUMNS}
@@ -208,8 +208,8 @@ class _PathCheck:
         self._kinds(trial, runs.owner)
         self._arcs(trial)
         self._events(trial, runs)
-        self._law(trial)
-        self._windows(trial)
+        undone = self._law(trial)
+        self._windows(trial, undone)
 
     def _facts(self, trial: _Trial) -> None:
         step = self.step
@@ -297,8 +297,11 @@ class _PathCheck:
             later = new.row >= len(runs.owner) or int(runs.owner[new.row]) >= old.row
             self._assert(earlier and later, trial, f"moves the event {old.what}; use with_rows")
 
-    def _law(self, trial: _Trial) -> None:
-        """Check deviation(before, undo(after)) <= promise, from the first point on."""
+    def _law(self, trial: _Trial) -> Toolpath:
+        """Check deviation(before, undo(after)) <= promise, from the first point on.
+
+        Return undo(after).
+        """
         promise = self.step.promise
         undone = self._undo(trial.label, trial.after)
         runs = self._runs(trial, undone)
@@ -309,7 +312,7 @@ class _PathCheck:
         along = np.isfinite(promise) and type(self.step).undo is not Pass.undo
         off = deviation_of_runs(trial.before, undone, runs, promise if along else 0.0)
         if not np.isfinite(promise):
-            return
+            return undone
         worst = float(off.distance.max(initial=0.0))
         message = f"undo(after) is {worst:g} mm from before; the promise is {promise:g} mm"
         self._assert(worst <= promise + SLACK, trial, message)
@@ -319,6 +322,7 @@ class _PathCheck:
         gap = float(np.nan_to_num(np.abs(undone.entry - trial.before.entry)).max(initial=0.0))
         message = f"undo(after) begins {gap:g} mm off: apply and undo change `entry` as well"
         self._assert(gap <= promise + SLACK, trial, message)
+        return undone
 
     def _parts(self, trial: _Trial, line: int) -> None:
         """Check that a pass that joins rows keeps its law in each of two windows."""
@@ -330,7 +334,7 @@ class _PathCheck:
                 self._events(half, self._runs(half, after))
                 self._law(half)
 
-    def _windows(self, trial: _Trial) -> None:
+    def _windows(self, trial: _Trial, undone: Toolpath) -> None:
         """Check that a program in two windows gives what it gives in one."""
         if len(trial.before) < 2:
             return
@@ -338,9 +342,8 @@ class _PathCheck:
         if self.step.demands.joins:
             self._parts(trial, int(lines[len(lines) // 2]))
             return
-        undone = self._undo(trial.label, trial.after)
         ways = (trial.before, self._apply, trial.after), (trial.after, self._undo, undone)
-        for line in (int(lines[1]), int(lines[len(lines) // 2])):
+        for line in {int(lines[1]), int(lines[len(lines) // 2])}:
             for whole, call, both in ways:
                 first, second = halves(whole, line)
                 parts = [call(trial.label, first), call(trial.label, second)]
