@@ -77,14 +77,16 @@ def in_part(reading: Reading, draw: random.Random) -> Reading:
 
 @pytest.mark.parametrize("source", SOURCES)
 def test_what_nobody_has_said_is_no_fault_of_ours(source: str) -> None:
-    """It is refused by name, or what is written does not hang on it: never GX601, never a crash."""
+    """It is refused by name, or what is written does not hang on it: never GX601, never a crash.
+
+    A program goes to every other control, the next one to those between; over night to all.
+    """
+    targets = [target for target in (*TARGETS, "heidenhain") if target != source]
     proved = 0
     for seed in seeds_kit.some(40):
         draw = random.Random(seed)
         text, reading = Drawn(seed, source).text(), in_part(reading_of(source), draw)
-        for target in (*TARGETS, "heidenhain"):
-            if target == source:
-                continue
+        for target in targets if seeds_kit.LONG else targets[seed % 2 :: 2]:
             inert = frozenset({"M6"} if target in CHANGED and draw.random() < 0.5 else ())
             run = gx.Pipeline(DIALECTS[source], DIALECTS[target], (), reading, inert=inert).run
             try:

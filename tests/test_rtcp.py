@@ -28,11 +28,14 @@ from rtcp_kit import (
     program,
     tips,
 )
+from seeds_kit import LONG
 
 import gcxform as gx
 
 EACH = settings(
-    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=6
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+    deadline=None,
+    max_examples=6 if LONG else 3,
 )
 ROOM = 2e-6  # mm; the least decimals of a machine file and of the matrices
 FORMS = ("ac-trunnion", "bc-trunnion", "c-table-b-head", "cb-fork", "nutating-head")

@@ -26,6 +26,7 @@ from rtcp_kit import (
     positions,
     tips,
 )
+from seeds_kit import LONG
 
 import gcxform as gx
 
@@ -36,6 +37,7 @@ ROOM = 2e-6  # mm; the least decimals of a machine file and of the matrices
 OFF, LEAN = 0.05, 1.5e-4  # mm and rad; errors of a good machine
 FINE = "{ A = 5, B = 5, C = 5 }"  # of angles, for levers of some 300 mm
 TOLERANCE = 0.002
+POSES = 300 if LONG else 100
 
 
 def measured(chain, seed, size=1.0):
@@ -142,7 +144,7 @@ def test_reposted_before_rounding(tmp_path, kind):
     nominal = chain_of_kind(kind, 5)
     real = measured(nominal, 6)
     letters = ("X", "Y", "Z", *nominal.letters)
-    poses = (rng.uniform(-1, 1, (300, 5)) * [150.0, 150.0, 150.0, 90.0, 170.0]).round(3)
+    poses = (rng.uniform(-1, 1, (POSES, 5)) * [150.0, 150.0, 150.0, 90.0, 170.0]).round(3)
     steps = reposted(tmp_path, kind, nominal, real)
     path = gx.Program(posted(poses, letters), steps.source, steps.machine_reading).path
     step = step_of(steps)
