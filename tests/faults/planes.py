@@ -240,8 +240,8 @@ MUTATIONS = (
     Mutation(
         "planes: other controls take the attitudes of a Fanuc",
         "plugins/gcxform_plugins/dialects/controls/industrial.py",
-        "NO_PLANES = replace(Fanuc.tip_rule, planes={})",
-        "NO_PLANES = Fanuc.tip_rule",
+        'TIPS = replace(NO_PLANES, planes={"G43.4": "follow-tip"})',
+        "TIPS = Fanuc.tip_rule",
         "tests/test_corpus.py::test_case[dialects/controls/mazak-plane]",
     ),
 )

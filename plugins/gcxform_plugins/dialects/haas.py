@@ -34,7 +34,8 @@ that what hangs on it is an option or refused. What is not named here is as in `
 | G31 | as Fanuc's | manual |
 | G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
-| G107 G112 G113 G234 G253 to G255 G268 G269 | another frame: refused | manual |
+| G107 G112 G113 G253 to G255 G268 G269 | another frame: refused | manual |
+| G234 while no axis turns | as G43.4 of a Fanuc: its coordinates turn with the table | manual |
 | G103, G187 | look-ahead, smoothness: change no position; E is a length | manual |
 | M97 M98 M99 | executed where what they call is found, as Fanuc; P of M98 holds no count | manual |
 | M99 P | a jump in its own program, also behind `[...]` or `IF [...]` (96-8000 p. 118) | manual |
@@ -174,7 +175,7 @@ class Haas(Fanuc):
         codes={"G234": "G43"},
         vector_codes={},
         unfollowed={"G268": "plane", "G253": "plane", "G269": "no-plane", "G234": "tip"},
-        planes={},
+        planes={"G234": "follow-tip"},
     )
     cycle_rule = replace(
         Fanuc.cycle_rule,

@@ -2,8 +2,9 @@
 
 | control | what its relative Fanuc does not |
 |---|---|
-| Mazak EIA | P of G4 in ms; G5 P2, P0 smooth; G54.1 P1 to P48; pecks pull back by parameter F12 |
-| Mitsubishi M700 | P of G4 in ms; M88 is coolant through the tool |
+| Mazak EIA | P of G4 in ms; G5 P2, P0 smooth; G54.1 P1 to P48; pecks pull back by parameter F12; |
+| | G43.4 as on a Fanuc (Vortex i manual p. 5-53: table or work coordinates by a parameter) |
+| Mitsubishi M700 | P of G4 in ms; M88: coolant through the tool; G43.4 as a Fanuc (M700V p. 477) |
 | Brother C00 | P of G4 in s, with a point; G54.1 P1 to P300; M494, M495: coolant through the tool |
 | | G100 changes the tool and moves, G77 and G78 tap: refused |
 | Hurco ISNC | P of G4 in s; cycles, G2.4 and G3.4 (arcs in space), G54.1, G5: refused |
@@ -44,6 +45,8 @@ BY_H = "posts for it call by H"
 
 NO_PLANES = replace(Fanuc.tip_rule, planes={})
 """Which of two attitudes the others take is not known."""
+TIPS = replace(NO_PLANES, planes={"G43.4": "follow-tip"})
+"""A tip needs none: its axes stand."""
 UNTITLED = replace(Fanuc.program_rule, has_title=False)
 NO_ASIDES = replace(Fanuc.text_rule, asides=False)
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
@@ -54,7 +57,7 @@ class Mazak(Fanuc):
 
     name = "mazak"
     kin = "fanuc"
-    tip_rule = NO_PLANES
+    tip_rule = TIPS
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
     text_rule = NO_ASIDES
@@ -66,7 +69,7 @@ class Mitsubishi(Fanuc):
 
     name = "mitsubishi"
     kin = "fanuc"
-    tip_rule = NO_PLANES
+    tip_rule = TIPS
     flow_rule = CALLS_ALONE
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
 
@@ -75,6 +78,7 @@ class Gsk(Mitsubishi):
     """GSK, milling, as a post writes for it."""
 
     name = "gsk"
+    tip_rule = NO_PLANES
     codes: ClassVar[Mapping[str, gx.Code]] = {
         name: code for name, code in Fanuc.codes.items() if name not in ("G54.1", "G54.2", "G54.4")
     }
