@@ -2,8 +2,9 @@
 
 Canned cycles that it has not become their moves, and ways home to another kind of point become
 moves in the machine, where it is known where home is. Moves in the machine at a feed become plain
-ones for a control whose G53 is always a rapid. A compensation finds the moves of all cycles:
-the errors of a machine on the way down a hole are others than where it begins.
+ones for a control whose G53 is always a rapid, and arcs of more than a turn several for one that
+has none such. A compensation finds the moves of all cycles: the errors of a machine on the way down
+a hole are others than where it begins.
 
 Splines that it has not become lines within `CHORD_ERROR` of them, behind the same steps, unless one
 of the steps makes lines of them by an error that it was given.
@@ -28,6 +29,7 @@ from gcxform.toolpath.cycles_as_moves import cycles_as_moves
 from gcxform.toolpath.facts import LINEAR_ONLY
 from gcxform.toolpath.path import Form, Kind, Toolpath
 from gcxform.toolpath.splines import spline_chords, splines_as_lines
+from gcxform.toolpath.turns import turning_on, within_a_turn
 
 CHORD_ERROR = 0.002
 """mm; a step `segment` takes another."""
@@ -91,6 +93,9 @@ def said_in_moves(
         with placing(window, file):
             path = _straight(path, plan.chord_error)
     path = _fed_in_work(plan, _homed(plan, read, path))
+    if not plan.target.arc_rule.turns and len(turning := turning_on(path)):
+        with placing(window, file):
+            path = within_a_turn(path, turning)
     foreign = plan.manner.foreign_cycles
     whole = compensates(plan.path_passes)
     if not (foreign or whole) or not (path.form == Form.CYCLE).any():

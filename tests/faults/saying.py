@@ -439,4 +439,11 @@ MUTATIONS = (
         "unknown = False",
         "tests/test_said_otherwise.py::test_m_codes_by_a_table_and_those_that_are_dropped",
     ),
+    Mutation(
+        "saying: parts of a turn are at half their places",
+        "gcxform/toolpath/turns.py",
+        "points_on_arcs(path, row[inner], part)",
+        "points_on_arcs(path, row[inner], part / 2)",
+        "tests/test_corpus.py::test_case[dialects/across/turns-for-fanuc]",
+    ),
 )

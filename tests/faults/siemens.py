@@ -1443,4 +1443,25 @@ MUTATIONS = (
         "name in POLAR",
         "tests/test_siemens_told.py::test_what_adds_to_a_length_loses_where_the_tool_is",
     ),
+    Mutation(
+        "siemens: DMODE may name any plane",
+        CYCLES,
+        "if plane == PLANES[axis]:",
+        "if plane:",
+        f"{CASES}[dialects/siemens/cycle-modes-another-plane]",
+    ),
+    Mutation(
+        "siemens: AMODE may call a depth a distance",
+        CYCLES,
+        "if how in ABSOLUTE and",
+        "if",
+        f"{CASES}[dialects/siemens/cycle-modes-other]",
+    ),
+    Mutation(
+        "siemens: other programs of a file are gone where one is written anew",
+        "gcxform/pipeline/written_back.py",
+        "for other in others for k in other]",
+        "for other in others[:0] for k in other]",
+        f"{CASES}[dialects/siemens/archive-compensated]",
+    ),
 )
