@@ -553,4 +553,18 @@ MUTATIONS = (
         'if "M6" in codes',
         "tests/test_fagor_flow.py::test_steps_behind_a_work_offset_stay",
     ),
+    Mutation(
+        "fagor: behind a hole of G99 the tool is where it was before",
+        "plugins/gcxform_plugins/dialects/fagor/drilling.py",
+        'at if self.back == "G98" else top',
+        "at",
+        f"{CASE}drilling]",
+    ),
+    Mutation(
+        "fagor: a block under a cycle is a hole whatever else it says",
+        "plugins/gcxform_plugins/dialects/fagor/drilling.py",
+        "if codes.keys() - BACK or self.back != self.hole.code:",
+        "if self.back != self.hole.code:",
+        f"{CASE}drilling-then-another-block]",
+    ),
 )

@@ -17,7 +17,7 @@ from lark.exceptions import UnexpectedInput
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.fagor.arithmetic import COUNTS, FAGOR, NOT_CERTAIN, holds
-from gcxform_plugins.dialects.fagor.polar import Polar
+from gcxform_plugins.dialects.fagor.drilling import Drilling
 from gcxform_plugins.dialects.fagor.structure import StructureError
 
 COMPUTED = frozenset(("expression", "assignment", "flow", "call"))
@@ -100,7 +100,7 @@ class Values(v.Evaluator):
         raise v.NoValueError("a condition that compares nothing", "compare it with a number")
 
 
-class Computing(Polar):
+class Computing(Drilling):
     """Executes lines that compute.
 
     known     parameters and variables that the program has set, None where only the control knows

@@ -58,7 +58,9 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | G54 to G59, `G159=1` to 6 | the same offsets: G159=1 is ORGT[1] [8070], and so is G54 [stone] |
 | G71 | millimetres |
 | G70 | inches, refused but for `[control] inch-feeds` = inches: no source says what F is |
-| G80, G98, G99 | say nothing, as all cycles are refused |
+| G81 Z I | a hole at each place: `drilling.py`; with K refused; other cycles refused [55 162] |
+| G80, G98, G99 | end it; behind each hole the initial plane, the reference plane [55 162] |
+| the same control, line by line | G81 and what is under it stay |
 | G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
 | G10 to G14, G72 | mirror and scale: refused |
 | G43, G44, G49 | are of the 8055: refused |

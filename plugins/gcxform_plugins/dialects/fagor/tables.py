@@ -12,7 +12,7 @@ AXES = frozenset("XYZABCUVW")
 PLAIN = frozenset({"G0", "G1", "G2", "G3", "G17", "G18", "G19", "G40", "G94", "G95", "G97"})
 """Codes that say here what they say in the tables of the dialect."""
 UNSAID = frozenset({"G80", "G98", "G99", "G53"})
-"""Codes about cycles: as all cycles are refused, they say nothing. Behind G53 nothing moves."""
+"""Codes about cycles: they say nothing to other blocks. Behind G53 nothing moves."""
 WORK = frozenset({"G54", "G55", "G56", "G57", "G58", "G59"})
 CORNERS = {"G5": "G64", "G7": "G61", "G50": "G64", "G61": "G64"}
 """How corners are taken: exactly, or rounded."""
