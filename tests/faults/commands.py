@@ -59,8 +59,8 @@ MUTATIONS = (
     Mutation(
         "view: tips of axes count from the machine",
         TIPS,
-        "angles[here])[0] - gauge - zero",
-        "angles[here])[0] - gauge - zero + 1.0",
+        "angles[here]) - gauge - zero",
+        "angles[here]) - gauge - zero + 1.0",
         "tests/test_view.py::test_axes_are_drawn_where_the_tip_goes",
     ),
     Mutation(

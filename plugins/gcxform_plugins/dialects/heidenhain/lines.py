@@ -107,12 +107,10 @@ class Lines(gx.Speller):
         codes = [coded(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]
-        if comment is not None and found and found[0].endswith("~"):
-            found.insert(0, f"; {comment}")
-        elif comment is not None and found:
+        if comment is not None and found and not found[0].endswith("~"):
             found[0] += f" ; {comment}"
         elif comment is not None:
-            found = [f"; {comment}"]
+            found.insert(0, f"; {comment}")
         return found
 
     def _said(self, codes: list[str], values: dict[str, str]) -> Iterator[str]:
