@@ -207,6 +207,13 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
+        "volumetric: the third point of a turn is its end",
+        "plugins/gcxform_plugins/passes/volumetric/forward/arcs.py",
+        "third[turns] = command[3 * count :]",
+        "third[turns] = last[turns]",
+        f"{CORPUS}[volumetric/turn-refit]",
+    ),
+    Mutation(
         "volumetric: flat arcs may be as uneven as they like",
         "plugins/gcxform_plugins/passes/volumetric/forward/arcs.py",
         "np.abs(last - size) + UNEVEN)",
