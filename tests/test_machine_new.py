@@ -237,6 +237,14 @@ def test_the_radius_of_the_tool_in_the_spindle_is_asked_for() -> None:
         assert {*used_by(Source.of_bytes(program), kind, Reading()).radii} == tools
 
 
+def test_the_length_of_a_tip_that_is_followed_is_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = workplace(tmp_path, monkeypatch)
+    program = "G21 G90 G94 G17 G54\nG0 X0. Y0. Z50. A0.\nG43.4 H2 Z9.\nG49\nM30\n"
+    assert "[tool.2]" in asked_of(here, "fanuc", program)
+
+
 def asked_of(here: Path, dialect: str, program: str, chain: str | None = None) -> str:
     """Return what a machine file for one program asks, and what is said beside it."""
     (here / "part.nc").write_text(program)

@@ -27,7 +27,7 @@ from gcxform.values import dataclass
 
 Places = dict[str, Location]
 """Where something is first used, by its name."""
-LENGTHS = frozenset({"length", "length-negative", "length-add", "vectors"})
+LENGTHS = frozenset({"length", "length-negative", "length-add", "vectors", "tip", "follow-tip"})
 ANY = "*"
 PLACED: Final = LINEAR.replace(EXTRUDER, "")
 """The axes of which a machine file says where zeros and reference points are, but rotary ones."""
