@@ -253,13 +253,16 @@ def test_words_and_its_language_say_the_same(seed):
     assert gx.compare(two, read(own, SIEMENS)).deviation < 0.004, text
 
 
-def test_arcs_behind_a_file_that_scales_are_kept(tmp_path):
+def test_arcs_behind_a_file_that_scales_are_written_anew(tmp_path):
     """Lines that were learnt before it is called stand for no arc behind it."""
     (tmp_path / "BIG.SPF").write_text("SCALE X10 Y10\nM17\n")
     arcs = "G2 X10 Y0 CR=5\nG2 X20 Y0 CR=5\nG2 X30 Y0 CR=5\n"
     head = "G0 G90 G17 G710 X0 Y0 Z5\nG1 F100 Z0\n"
     (tmp_path / "part.mpf").write_text(f"{head}{arcs}BIG\nG0 X0 Y0 Z5\nG1 Z0\n{arcs}SCALE\nM30\n")
     cut = Pipeline.parse("segment chord-error=50um", "siemens")
-    with pytest.raises(gx.InputError, match="may lead along an arc") as refused:
-        cut.run(tmp_path / "part.mpf")
-    assert refused.value.diagnostics[0].where.line == 9
+    result = cut.run(tmp_path / "part.mpf")
+    (why,) = result.certificate.written_out
+    assert why.startswith("the whole program: line 9: ")
+    assert "may lead along an arc" in why
+    assert b"G2" not in result.text
+    assert b"X300 Y0" in result.text

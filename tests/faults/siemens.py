@@ -143,7 +143,7 @@ MUTATIONS = (
         "plugins/gcxform_plugins/dialects/siemens/scaling.py",
         "self._scaled |= _scales(self.lines[lines.start : lines.stop])",
         "self._scaled |= False",
-        "tests/test_siemens_written.py::test_arcs_behind_a_file_that_scales_are_kept",
+        "tests/test_siemens_written.py::test_arcs_behind_a_file_that_scales_are_written_anew",
     ),
     Mutation(
         "siemens: lines stand for an arc where a frame scales",

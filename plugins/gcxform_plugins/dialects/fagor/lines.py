@@ -37,7 +37,7 @@ class Lines(gx.Speller):
     length  that of which tool is in force, "0" for none
     waits   M6 or a place of the machine has been, and D has not yet: it is said before a move
     bare    D0 was said last;  shifted: D was, and no absolute Z since;  steps: G91 is in force
-    over    the program has ended
+    over    the program has ended;  headed: its name was heard
     """
 
     def __init__(self, name: str, inch: bool) -> None:
@@ -46,16 +46,17 @@ class Lines(gx.Speller):
         super().__init__(bare[:LONGEST], inch)
         self.tool = self.in_spindle = self.length = "0"
         self.waits = self.over = self.bare = self.chosen = self.steps = self.shifted = False
+        self.headed = False
 
     def opening(self) -> list[str]:
-        """Return the first line."""
-        return [f"%{self.name}"]
+        """Return the first line; one of this control may have had none."""
+        return [f"%{self.name}"] if self.headed or not self.asides else []
 
     def lines(self, block: str) -> list[str]:
         """Return the lines for a block. Raises UnspeakableError."""
         asides, comments, words = self.heard(block)
         if asides and asides[0].startswith("%"):
-            self.name = asides.pop(0)[1:]
+            self.name, self.headed = asides.pop(0)[1:], True
         if SEMI_ROUNDED in asides:
             words = [each for each in words if each != ("G", "64")]
         found = [*asides, *self._said(words)]
