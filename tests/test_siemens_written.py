@@ -266,3 +266,27 @@ def test_arcs_behind_a_file_that_scales_are_written_anew(tmp_path):
     assert "may lead along an arc" in why
     assert b"G2" not in result.text
     assert b"X300 Y0" in result.text
+
+
+@pytest.mark.parametrize(
+    ("body", "why"),
+    [
+        ("L10\n", "L10.SPF: this line would change, and stands in another program"),
+        ("L20\nX=IC(1)\n", ""),
+        ("WHILE R1<2\nX=IC(5) R1=R1+1\nENDWHILE\n", "line 4: this line becomes another each time"),
+    ],
+)
+def test_the_certificate_says_why_a_program_is_written_anew(tmp_path, body, why):
+    (tmp_path / "L10.SPF").write_text("X=IC(5)\nM17\n")
+    (tmp_path / "L20.SPF").write_text("X5\nM17\n")
+    part = tmp_path / "part.mpf"
+    part.write_text(f"G710 G17 G90 G94 G54\nR1=0 G0 X0\n{body}M30\n")
+    said = Pipeline.parse("absolute", "siemens").run(part).certificate.written_out
+    assert [why in each for each in said] == [True] * bool(why)
+
+
+def test_what_cannot_be_written_anew_either_says_both():
+    program = "G710 G17 G90 G94 G54\nG0 X0 Y0 Z5\nG1 Z0 F100\nG2 X5 Y0 CR=4 G642 FA[X]=3\nM30\n"
+    with pytest.raises(gx.InputError, match="may lead along an arc") as refused:
+        Pipeline.parse("segment chord-error=50um", "siemens").run(program.encode())
+    assert "written whole it is refused, too: line 4: FA" in refused.value.diagnostics[0].hint

@@ -1091,7 +1091,7 @@ MUTATIONS = (
         "gcxform/pipeline/written_back.py",
         'return same and b"".join(self.given.windows()) == folded.text',
         "return same",
-        "tests/test_klartext_spelled.py",
+        f"{CASES}[dialects/siemens/spelled-otherwise]",
     ),
     Mutation(
         "siemens: what is the same text is taken for kept in other modes",
@@ -1210,7 +1210,7 @@ MUTATIONS = (
         "gcxform/emit/respelling.py",
         "        if text != raw and not translator.is_own(line):\n",
         "        if text is None and not translator.is_own(line):\n",
-        f"{CASES}[dialects/siemens/call-kept]",
+        "tests/test_siemens_written.py::test_the_certificate_says_why_a_program_is_written_anew",
     ),
     Mutation(
         "siemens: where an axis is behind a line that stays is taken as before",
