@@ -146,26 +146,30 @@ class SpelledOut:
             self.plan.machine_reading.asides,
             self._seals,
         )
-        other = b"".join(self._others)
-        text, of = text + other, [*of, *[of[-1] if of else 0] * len(self._others)]
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
-        return Folded(text, tuple(self.source.line_of(line + 1) - 1 for line in of), (), ())
+        own = [self.source.line_of(line + 1) - 1 for line in of]
+        return Folded(text + self._others, (*own, *self._lines_of_others), (), ())
 
     def sealed(self, text: bytes) -> bytes:
         """Return a proved program with the digits of its seal."""
         return sealed_anew(text, self.marks.seal) if self._seals else text
 
-    @cached_property
-    def _others(self) -> list[bytes]:
-        """Lines of other programs in the file, in the same language."""
+    @property
+    def _lines_of_others(self) -> list[int]:
+        """Lines of other programs in the file, in the same language, from 0."""
         from gcxform.flow.translated import Translated
 
         if not (self.plan.machine_reading.asides and isinstance(self.source, Translated)):
             return []
-        lines, end = self.source.lines, b"\r\n" if b"\r\n" in self._blocks else b"\n"
-        others = self.source.translator.others
-        return [lines[k].encode("latin-1") + end for other in others for k in other]
+        return [line for other in self.source.translator.others for line in other]
+
+    @property
+    def _others(self) -> bytes:
+        """These lines."""
+        end = b"\r\n" if b"\r\n" in self._blocks else b"\n"
+        lines = getattr(self.source, "lines", ())
+        return b"".join(lines[k].encode("latin-1") + end for k in self._lines_of_others)
 
     @cached_property
     def _blocks(self) -> bytes:

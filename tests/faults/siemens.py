@@ -1460,8 +1460,8 @@ MUTATIONS = (
     Mutation(
         "siemens: other programs of a file are gone where one is written anew",
         "gcxform/pipeline/written_back.py",
-        "for other in others for k in other]",
-        "for other in others[:0] for k in other]",
+        "return [line for other in self.source.translator.others for line in other]",
+        "return []",
         f"{CASES}[dialects/siemens/archive-compensated]",
     ),
 )
