@@ -81,6 +81,7 @@ from gcxform.errormodel.text_tables import text_rows as text_rows
 from gcxform.flow.items import Item as Item
 from gcxform.flow.speller import Speller as Speller
 from gcxform.flow.speller import UnspeakableError as UnspeakableError
+from gcxform.flow.split_numbers import NUMBER as NUMBER
 from gcxform.flow.stretch import Ahead as Ahead
 from gcxform.flow.stretch import Computed as Computed
 from gcxform.flow.tool_names import ToolNames as ToolNames

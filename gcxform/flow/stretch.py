@@ -76,15 +76,15 @@ class Ahead(NamedTuple):
     ends: Sequence[int]
 
     @classmethod
-    def of(cls, first: int, pieces: Sequence[str], slot: str) -> Self:
-        """Return lines for their text, split at its numbers, for which `slot` stands in keys."""
-        keys = slot.join(pieces[::2]).split("\n")
+    def of(cls, first: int, text: str, numbers: Numbers, slot: str) -> Self:
+        """Return lines for their text, in which `slot` stands for each of their numbers."""
+        keys = text.split("\n")
         starts = [*accumulate([key.count(slot) for key in keys], initial=0)]
         ends: list[int] = []
         for _, same in groupby(keys):
             count = len([*same])
             ends += [len(ends) + count] * count
-        return cls(first, keys, pieces[1::2], starts, ends)
+        return cls(first, keys, numbers, starts, ends)
 
     def numbers_of(self, k: int) -> Numbers:
         """Return the numbers of a line, of which `k` are before it."""

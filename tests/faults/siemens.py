@@ -961,6 +961,20 @@ MUTATIONS = (
         LEARNT,
     ),
     Mutation(
+        "lines: two signs before a number are one",
+        "gcxform/flow/split_numbers.py",
+        'TWICE = (".0.", "..", "++", "+-", "-+", "--")',
+        'TWICE = (".0.", "..", "++", "+-", "--")',
+        f"{LEARNT}::test_texts_are_split_as_an_expression_does",
+    ),
+    Mutation(
+        "lines: a number with two points is one",
+        "gcxform/flow/split_numbers.py",
+        'TWICE = (".0.", "..",',
+        'TWICE = ("..",',
+        f"{LEARNT}::test_texts_are_split_as_an_expression_does",
+    ),
+    Mutation(
         "siemens: a sign before a number of a compiled line is lost",
         COMPILING,
         "        if self.signs:\n",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ from seeds_kit import LONG, shares
 
 import gcxform as gx
 from gcxform.flow import translation
+from gcxform.flow.split_numbers import NUMBER, split_at_numbers
 from gcxform.flow.translated import Translated, translated_so_far
 from gcxform.machine.machine import Tool
 from gcxform.modal.state import Reading
@@ -179,6 +181,17 @@ def test_a_compiled_line_does_its_assignments_in_turn() -> None:
     lines = [line for k in range(9) for line in (f"R1={k} R2=R1", f"X{k}.5", "X=R2")]
     text = "\n".join(["G90 G17 G1 F9 X1 Y1", *lines, "M30", ""])
     assert found(text, "siemens", READINGS[0])[0][2:20:2] == [f"X{k}" for k in range(9)]
+
+
+@shares(1_000_000 if LONG else 4_000, 1_000_000 if LONG else 4_000)
+def test_texts_are_split_as_an_expression_does(seeds: range) -> None:
+    pieces = (*"0019.+-", "XY", " ", "=", "\n", "R", "\t", "\xe9", "10.", "-.5", "1.25", "0" * 17)
+    plain = re.compile(f"({NUMBER.pattern})")
+    for seed in seeds:
+        pick = random.Random(seed)
+        text = "".join(pick.choices(pieces, k=pick.randint(0, 14)))
+        found = plain.split(text)
+        assert split_at_numbers(text, "#") == ("#".join(found[::2]), found[1::2]), text
 
 
 class Hidden(default_registry().dialect("siemens").translator):  # type: ignore[misc]

@@ -42,7 +42,7 @@ class Blocks(Contours):
     spindle = speed = corners = owed = ""
 
     grammar = ("gcxform_grammars", "siemens")
-    number = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+    number = gx.NUMBER
     signs = re.compile(
         rb"\b(?:TRAORI|TRAFOOF|CYCLE8[0-9]|MCALL|SUPA|CR=|G710|G700|G64[1-5]|CIP|G500|GOTO[FB]\b"
         rb"|DEF (?:REAL|INT)\b|G290|[ABC]SPLINE\b|[SMR][0-9]+[ \t]*=|OS\[|[XYZ]=[-+.0-9])|%_N_"
