@@ -14,7 +14,7 @@ from oracles.canon import CanonMove, CanonProgram
 from properties import test_laws as laws
 from reference.arcs import sweep
 from reference.interpreter import Move
-from seeds_kit import DRAWN, LONG, shares
+from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.contract.options import ModelFile
@@ -23,7 +23,6 @@ from gcxform.testing.generate import Options, program
 from gcxform.toolpath.path import FeedMode, Kind, Plane, Toolpath
 
 COUNT = 20 * DRAWN
-WRITTEN = COUNT // 2 if LONG else 6 * DRAWN
 CLOSE = 1e-4  # mm, degrees; beyond the rounding of the print
 PRINTED = 0.5e-4  # units of the program
 START = dict.fromkeys("XYZABC", 0.0)
@@ -146,7 +145,7 @@ def compensation(
     )
 
 
-@shares(WRITTEN, 30)
+@shares(COUNT // 2, 30)
 def test_linuxcnc_reads_what_gcxform_writes(seeds: range) -> None:
     """Random chains: the same events, and the machine within the budget of the program's path."""
     jobs = [job for seed in seeds if (job := written(seed)) is not None]
