@@ -74,6 +74,9 @@ class MotionRule:
     g53_in_g91        what G53 does under G91: "absolute", or "refused" by the control or by us
     g53_is_rapid      G53 moves in rapid whatever motion code is in force
     rounds_corners    corners are rounded where no path mode is stated, as they are in G64
+    corners           letters that stand behind a comma at a straight move and put a piece into the
+                      corner at its end: C a chamfer, which begins and ends as far from the corner
+                      as its number says, R an arc of that radius
     cycles_stop       the moves of a cycle end exactly, also where G64 rounds corners: G61 is in
                       force in its block, and behind it G64 as it was stated
     extruder          which codes say whether E is a distance: "own", M82 and M83 alone; "last", the
@@ -87,5 +90,6 @@ class MotionRule:
     g53_in_g91: str = "refused"
     g53_is_rapid: bool = False
     rounds_corners: bool = False
+    corners: str = ""
     cycles_stop: bool = False
     extruder: str = ""

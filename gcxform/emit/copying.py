@@ -8,6 +8,7 @@ from gcxform.catalogue.remedies import leave_out_block, put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import EXTRUDER, LINEAR
 from gcxform.emit.converting import convertible
+from gcxform.emit.corners import counted_from_corners
 from gcxform.emit.depending import Depending
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.needed_modes import Stated
@@ -257,7 +258,7 @@ class Copying:
         And those of them whose words are converted to another unit, and `exact`.
         """
         stands = np.zeros(len(old_count), np.bool_)
-        special = np.zeros(len(old_count), np.bool_)
+        special = pieces.corner.copy()
         special[self.original.block[~self.original.is_free]] = True
         paired = (old_count == pieces.count) & ((old_count == 1) | special) & (old_count > 0)
         rows = np.flatnonzero(paired[self.path.block])
@@ -282,6 +283,8 @@ class Copying:
             good[own] &= self.same.words(rows[own], others[own])
         turned = plain | one_of(self.path.form[rows], (Form.SPLINE, *IN_PLACE))
         good &= ~turned | self.same.frames(rows, others)
+        corner = pieces.corner[lines]
+        good = corner | (good & ~counted_from_corners(self.task)[lines])
         starts_exact, exact = self._exactness(rows, others, good & ~converted[lines])
         points = np.flatnonzero(one_of(self.path.form[rows], IN_PLACE))
         if len(points):
@@ -295,6 +298,7 @@ class Copying:
         if len(arcs):
             good[arcs] &= self.same.arcs(rows[arcs], others[arcs], starts_exact[arcs])
         stands[self.path.block[rows]] = True
+        good |= corner
         stands[self.path.block[rows[~good]]] = False
         return stands, converted, exact
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gcxform.dialect.cycle_rule import TAPPING
+from gcxform.emit.corners import standing_corners
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
 from gcxform.emit.own_blocks import own_blocks
@@ -43,6 +44,7 @@ class Pieces:
     expanded_line
               (live,) whether it calls a cycle, or has a control point of a spline of weights and
               knots, and is written as plain moves
+    corner    (live,) whether it is written as it stands, because of a corner
     line      (pieces,) line of the window
     row       (pieces,) row of the path; only where `has_row`
     event     (pieces,) index into `events`, one of each kind, -1 for none: what a cycle does
@@ -60,6 +62,7 @@ class Pieces:
 
     count: Ints
     expanded_line: Flags
+    corner: Flags
     events: list[Event | Given]
     line: Ints
     row: Ints
@@ -83,7 +86,8 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     """Return the pieces of a window."""
     path, cycle = task.path, task.read.modes.cycle != CYCLE_OFF
     count = np.bincount(path.block, minlength=task.read.live)
-    special = _special(task, taps) | _stored(task, cycle & (count == 0))
+    corner = standing_corners(task)
+    special = _special(task, taps) | _stored(task, cycle & (count == 0)) | corner
     expanded = cycle & ~special & ~taps.lines & ~_stores_taps(task, count) & _in_moves(task)
     opens, closes = around(expanded)
     expanded |= _of_nurbs(task)
@@ -112,6 +116,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     return Pieces(
         count=count,
         expanded_line=expanded,
+        corner=corner,
         events=list(events.values()),
         line=line,
         row=row,

@@ -153,6 +153,8 @@ class TemplateWriter:
             return self.meaning.percent and self.source is not self.target
         if not isinstance(item, Word):
             return False
+        if item.address == self.meaning.corner:  # its piece is a block of its own
+            return self.key.role is not Role.VERBATIM
         return (code_of(item) if item.address in CODES else item.address) in self.unsaid
 
     def _item(self, item: Item, lead: bytes, slot: int) -> None:

@@ -52,10 +52,13 @@ def written_out(
         source.assumed = tuple(run.assumed)
         source.undecided = Undecided(alarm=run.alarm)
         return source
+    from gcxform.flow.corners import refuse_parted
     from gcxform.flow.walk import Walked
 
     lines = np.concatenate([np.empty(0, np.int64), *run.origin])
-    text, undecided = b"".join(run.text), replace(run.undecided(), alarm=run.alarm)
+    text = b"".join(run.text)
+    refuse_parted(run, dialect, text, lines)
+    undecided = replace(run.undecided(), alarm=run.alarm)
     found = WrittenOut(source, text, lines, run.assumed, run.listing.files, undecided)
     if not undecided:
         found = Walked(source, text, lines, run.walk(callees(run)), run.assumed)

@@ -81,8 +81,9 @@ class Findings:
         start = int(self.window.start[line])
         begin = int(self.window.number_start[number]) - start
         end = int(self.window.number_end[number]) - start
+        first = address[0]  # the comma of an address that has one, which a blank may follow
         letter = max(
-            text.rfind(address.encode(), 0, begin), text.rfind(address.lower().encode(), 0, begin)
+            text.rfind(first.encode(), 0, begin), text.rfind(first.lower().encode(), 0, begin)
         )
         return letter + 1, end - letter
 

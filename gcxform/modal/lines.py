@@ -22,6 +22,7 @@ from gcxform.modal.meaning.tables import (
     NURBS_END,
     THREAD_CYCLE,
     MeaningTable,
+    column_of,
     of_splines,
 )
 from gcxform.modal.numbers_without_point import Pointless, why_open
@@ -31,7 +32,7 @@ from gcxform.syntax.undecided import DECIDED, Undecided
 from gcxform.system.arrays import Flags, Floats, Small
 from gcxform.system.distinct import one_of
 
-DISTANCES = "XYZABCUVWIJKR"
+DISTANCES = frozenset({*"XYZABCUVWIJKR", ",C", ",R"})
 LENGTHS = LINEAR + "IJKR"
 POINT = "write it with a point, where the control has it"
 NOTHING = 0  # the shape of an empty line
@@ -199,7 +200,7 @@ class Lines:
         Only lines `among` count, where given. Whether it is a `distance`, for which a point
         matters, goes by its address unless it is said.
         """
-        column = ord(address) - 65
+        column = column_of(address)
         if not self._used[column]:
             return None
         slot = self.table.slots[:, column][self.shape]

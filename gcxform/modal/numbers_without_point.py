@@ -129,7 +129,8 @@ class Pointless:
         largest = lines[np.argmax(np.abs(value[lines]))]
         for line in lines[: Findings.enough].tolist():
             why, unit = "has no decimal point: its unit", bool(inch[line])
-            hint = hint_of(address, unit)
+            known = address in self.rule.calculator_words
+            hint = (hint_of if known else hint_of_argument)(address, unit)
             if computed[line]:
                 why = "is computed: to what it is rounded"
                 hint = hint_of_rounding(address, unit)

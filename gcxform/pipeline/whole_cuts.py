@@ -12,6 +12,7 @@ from itertools import pairwise
 
 from gcxform.pipeline.cutter_comp import whole_stretches
 from gcxform.pipeline.plan import Plan
+from gcxform.syntax.source import before_corners
 
 MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
 LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
@@ -41,8 +42,8 @@ def _in_parts(texts: Iterator[bytes]) -> Iterator[bytes]:
         drilled, drills = _drilled(text, drills)
         at = 0
         while 2 * drilled > len(text) and len(text) - at > PART:
-            end = text.rfind(b"\n", at, at + PART) + 1
-            if not end:
+            end = before_corners(text, text.rfind(b"\n", at, at + PART) + 1)
+            if end <= at:
                 break
             yield text[at:end]
             at = end

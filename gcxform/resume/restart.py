@@ -17,7 +17,7 @@ from gcxform.modal.state import Reading, State
 from gcxform.resume.memory import Memory, shapes_seen
 from gcxform.resume.preamble import Approach, Preamble
 from gcxform.syntax.scan import Window
-from gcxform.syntax.source import Source
+from gcxform.syntax.source import Source, before_corners
 from gcxform.system.arrays import Flags
 from gcxform.toolpath.path import Kind, Toolpath
 from gcxform.values import dataclass
@@ -72,11 +72,14 @@ class Restart:
                 self._before(window)
                 continue
             start = int(window.start[index])
+            line = window.line(index).decode("latin-1")
+            if before_corners(text, start) != start:
+                self.text = line
+                raise self.refusal("no restart is safe here: the block before ends in a corner")
             self.reader.lines = first
             if start:
                 self._before(self.reader.read(text[:start]))
             rest.append(text[start:])
-            line = window.line(index).decode("latin-1")
         if not rest:
             message = f"{self.source.name} has {self.reader.lines} lines and no line {self.line}"
             raise UsageError.one("GX731", message)

@@ -150,6 +150,9 @@ def _item(node: Any, text: str) -> Item:
     if rule == "word":
         address, value = node.children
         return Word(start, end, str(address).upper(), _value(value, text))
+    if rule == "comma_word":
+        address, value = node.children
+        return Word(start, end, f",{address}".upper(), _value(value, text))
     if rule == "comment":
         return Comment(start, end)
     if rule in MARKS:

@@ -30,6 +30,8 @@ TICK = 0.01  # s; two writes may be that far apart and have the same time
 SHOWN = 100  # characters of a line that is too long
 WINDOW = 1 << 20  # bytes; what is worked on at once should stay in the processor's cache
 CHUNK = 1 << 22
+LOOK_BACK = 1 << 20  # bytes; so long a row of corners is divided
+CORNER = re.compile(rb",[ \t]*[RrCc]")
 COMMENT = re.compile(rb"\([^()\r\n]*\)")  # of every dialect; some have others besides
 
 
@@ -174,7 +176,7 @@ class Source:
             text = rest + chunk
             if (at := _too_long(text)) is not None:
                 raise _refused(self._place(done + at))
-            cut = _last_line_end(text)
+            cut = before_corners(text, _last_line_end(text))
             done += cut
             if cut:
                 yield text[:cut]
@@ -240,6 +242,21 @@ def _last_line_end(text: bytes) -> int:
     if carriage_return > line_feed and text[carriage_return : carriage_return + 1] != b"\n":
         return carriage_return
     return line_feed
+
+
+def before_corners(text: bytes, cut: int) -> int:
+    """Return where to cut a text so that a corner is not divided from the block behind it.
+
+    `,R5.` and `,C3.` put a piece between two blocks, which may have such a word as well.
+    """
+    at, least = cut, max(cut - LOOK_BACK, 0)
+    while at > least:
+        stop = at - 1 - text.endswith(b"\r\n", 0, at)
+        begin = 1 + max(text.rfind(b"\n", 0, stop), text.rfind(b"\r", 0, stop))
+        if CORNER.search(text, begin, at) is None:
+            return at
+        at = begin
+    return cut if at else 0
 
 
 def has_sign(sign: re.Pattern[bytes], text: bytes) -> bool:

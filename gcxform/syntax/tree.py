@@ -62,7 +62,7 @@ class Expression:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """An address letter (upper case) and its value."""
+    """An address letter (upper case), of some words with a comma before it, and its value."""
 
     start: int
     end: int

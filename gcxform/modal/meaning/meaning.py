@@ -131,6 +131,7 @@ class Meaning:
     `lengths` are the words that codes take for themselves and that are in the unit of the program:
     code, address, slot. `lent` are words that codes take which a move of the block may want as
     well: the code by address. `choices` are what was chosen among several meanings, in sentences.
+    `corner` is the word that puts a chamfer or an arc into the corner at the end of the move.
     `sends`: it sends something out; `prints` is on what the values that it prints hang.
     `call` is the code of a block that calls a program and is kept, `call_slots` are its numbers.
     """
@@ -155,6 +156,7 @@ class Meaning:
     acts: list[Act] = field(default_factory=list)
     lengths: list[tuple[str, str, int]] = field(default_factory=list)
     drill_words: str = ""
+    corner: str = ""
     lent: dict[str, str] = field(default_factory=dict)
     refusal: Refusal | None = None
     choices: tuple[str, ...] = ()

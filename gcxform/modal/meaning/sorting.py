@@ -13,6 +13,7 @@ from gcxform.dialect.dialect import LINEAR, Dialect
 from gcxform.modal.meaning.asides import ASIDE, read_aside
 from gcxform.modal.meaning.calls import ELSEWHERE, calling, not_there, read_call
 from gcxform.modal.meaning.choices import choices_of
+from gcxform.modal.meaning.corner_words import corner_word
 from gcxform.modal.meaning.lathe import lathe_signs
 from gcxform.modal.meaning.meaning import (
     ACT_ORDER,
@@ -77,6 +78,7 @@ def _read(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[Re
     yield from _g_codes(shape, dialect, meaning)
     yield from _m_codes(shape, dialect, meaning)
     yield from _number_first(shape, dialect)
+    yield from corner_word(shape, dialect, meaning)
     yield from _words(shape, dialect, meaning)
     meaning.bars_comp = _bars_comp(shape, dialect, meaning)
     meaning.choices = choices_of(shape, dialect, meaning)
@@ -328,6 +330,7 @@ def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
     """Return why the control does not have a word, None if it does."""
     address, width = word.address, word.end - word.start
     known = address in dialect.axes or address in dialect.block_rule.words or address in CODES
+    known |= address in {f",{letter}" for letter in dialect.motion_rule.corners}
     if not known or (address == "O" and not dialect.program_rule.has_program_number):
         return Refusal("GX201", word.start, width, f"{dialect.name} has no word {address}")
     if address == "O" and not program_number_fits(word, dialect):
@@ -377,7 +380,7 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
         message = f"beside {name} this control leaves the move of a block out"
         yield Refusal("GX202", 0, len(shape.block.text), message, "write two blocks")
     motion = {*meaning.axes, *meaning.centres, *"FNRST", dialect.arc_rule.turns}
-    motion |= offset_word(dialect, meaning)
+    motion |= offset_word(dialect, meaning) | {meaning.corner}
     for word in shape.block.words:
         address = word.address
         if (lacking := _lacking(word, dialect)) is not None:

@@ -138,6 +138,7 @@ FLAGS = (
     "sets_tables",
     "runs_macro",
     "shares_words",
+    "corner",
 )
 
 
@@ -154,6 +155,14 @@ CHANGING = frozenset("XYZABCUVWIJKRQF")
 def _calls(meaning: Meaning) -> bool:
     """Whether blocks name a cycle."""
     return any(NUMBER.get(code) in CYCLES for code in meaning.groups.values())
+
+
+ADDRESSES = 2 * 26  # letters, and letters behind a comma
+
+
+def column_of(address: str) -> int:
+    """Return the column of an address in the slots of a table of meanings."""
+    return ord(address[-1]) - 65 + 26 * address.startswith(",")
 
 
 LATELY = 8192  # shapes whose meanings are kept
@@ -180,7 +189,7 @@ class MeaningTable:
         self.functions: dict[int, Any] = {}  # of shapes that compute something, once made
         self.groups: Small = np.empty((0, len(COLUMNS)), np.int8)
         self.flags: Flags = np.empty((0, len(FLAGS)), np.bool_)
-        self.slots: NDArray[np.int16] = np.empty((0, 26), np.int16)
+        self.slots: NDArray[np.int16] = np.empty((0, ADDRESSES), np.int16)
 
     def update(self) -> None:
         """Look at the shapes that are new."""
@@ -195,7 +204,7 @@ class MeaningTable:
             more = max(len(self.meanings) - room, room)
             self.groups = np.vstack([self.groups, np.full((more, len(COLUMNS)), -1, np.int8)])
             self.flags = np.vstack([self.flags, np.zeros((more, len(FLAGS)), np.bool_)])
-            self.slots = np.vstack([self.slots, np.full((more, 26), -1, np.int16)])
+            self.slots = np.vstack([self.slots, np.full((more, ADDRESSES), -1, np.int16)])
         for index in range(known, len(self.meanings)):
             self._enter(index, self.meanings[index])
 
@@ -206,8 +215,8 @@ class MeaningTable:
             if group in COLUMNS and number is not None:
                 self.groups[index, COLUMNS.index(group)] = number
         for address, slot in meaning.slots.items():
-            if address.isalpha():
-                self.slots[index, ord(address) - 65] = slot
+            if address[-1].isalpha():
+                self.slots[index, column_of(address)] = slot
         self.flags[index] = (
             bool(meaning.axes),
             bool(meaning.centres) or "R" in meaning.slots,
@@ -241,6 +250,7 @@ class MeaningTable:
             any(act.name == "table" for act in meaning.acts),
             meaning.runs_macro and not meaning.call,
             bool(self._calls_with_values and meaning.lost_by and set(meaning.slots) & CHANGING),
+            bool(meaning.corner),
         )
 
     def flag(self, name: str, shape: Ints) -> Flags:

@@ -20,6 +20,7 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import MANY_WORK, NUMBER, of_splines
 from gcxform.modal.moves.arcs import resolve_arcs, words_of_arcs
 from gcxform.modal.moves.blind_moves import blind_rows, may_be_blind
+from gcxform.modal.moves.corners import with_corners
 from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
@@ -301,6 +302,7 @@ class Moves:
     def _path(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath; arcs get their centres."""
         line, rows = rows.line, blind_rows(self.track, rows)
+        at_side = self.state.at_side
         path = self._fed(self._unfinished(rows), rows).replace(leaving=self.state.leaving)
         if len(line):
             self.state.rapid = bool(path.kind[-1] == Kind.RAPID)
@@ -314,7 +316,7 @@ class Moves:
         if path.has_arcs:
             words = words_of_arcs(self.track, line[path.is_arc])
             path = resolve_arcs(path, words, self.lines)
-        return self.nurbs.as_beziers(path)
+        return with_corners(self.nurbs.as_beziers(path), self.lines, at_side)
 
     def _unfinished(self, rows: Rows) -> Toolpath:
         """Return the rows as a toolpath with feeds as numbers in force, and without centres."""

@@ -22,6 +22,11 @@
 | an M code not listed | may run a macro: positions and variables are unknown after it |
 | words beside it, and beside M6 | may be those of a macro (6080 to 6089): never changed |
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
+| `X50. ,R5.`, `Y50. ,C3.` | an arc, a chamfer in the corner (cnclearning.com, p=1015): followed |
+| the block behind a corner | has to be a G1 with a way (alarms 51 and 52): else refused by name |
+| no room for it, a turn below 1 degree | it stops, or has no corner there: refused |
+| a corner with another F behind it, G93, M0 or M9 | what is done when is not known: refused |
+| a corner at an arc, at G41, in G16; `,A` | is not followed: refused |
 | G41, G42 | D stays in force, D0 is none; the file has radii, or `d` and `d-is` (5004#2) |
 | G41, G42, G40 with an arc | refused: alarm 34 |
 | G43 without Z | moves Z or shifts zero: Z is lost, or `[control] tool-length-alone` says which |
@@ -217,7 +222,7 @@ class Fanuc(gx.Dialect):
     )
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
-    motion_rule = gx.MotionRule(g53_is_rapid=True)
+    motion_rule = gx.MotionRule(g53_is_rapid=True, corners="CR")
     arc_rule = gx.ArcRule(absolute=0.01)
     cutter_comp = gx.CutterComp(stored=True)
     offset_rule = gx.OffsetRule(g10_l20="G54.1", g10_tools=TOOL_TABLE, g10_p0="all")

@@ -33,6 +33,7 @@ that what hangs on it is an option or refused. What is not named here is as in `
 | G70 G71 G72 | drill holes of the cycle in force at places of their own: as these | manual |
 | G31 | as Fanuc's | manual |
 | G35 G36 G37 G136 | move to a signal and write an offset: kept, both are lost | manual |
+| `,C`, `,R` | as Fanuc's, by examples (fliphtml5.com, osspz/qdbf p. 16) | course |
 | G68, G101, G100 | as Fanuc's G68, G51.1, G50.1; G101 with zeros only; G51 is refused | manual |
 | G107 G112 G113 G253 to G255 G268 G269 | another frame: refused | manual |
 | G234 while no axis turns | as G43.4 of a Fanuc: its coordinates turn with the table | manual |

@@ -19,6 +19,7 @@ from gcxform_plugins.passes.cutter_comp.offsetting import (
     Manner,
     offset,
     swept,
+    turns_about,
 )
 from gcxform_plugins.passes.cutter_comp.proof import prove_beside
 from gcxform_plugins.passes.cutter_comp.refusals import STILL, refuse_unresolved
@@ -256,7 +257,7 @@ class _CentrePath:
             "kind": before.kind[row],
             "centre": self.centre[row],
             "sweep": self.sweep[row],
-            "nth": before.nth[row] + nth,
+            "nth": before.nth[row] + nth + _inserted_before(before.source, counts)[row],
             "side": np.zeros(len(row), np.int8),
             "radius": np.full(len(row), np.nan),
         }
@@ -284,16 +285,13 @@ class _CentrePath:
         columns["end"][places] = end
         columns["kind"][places] = np.where(around, turned, straight)
         columns["centre"][places] = np.where(around[:, None], centre, np.nan)
-        columns["sweep"][places] = np.where(around, _turns(before[at], corner, begin), 0.0)
+        columns["sweep"][places] = np.where(around, turns_about(before[at], corner, begin), 0.0)
 
 
-def _turns(ends: Floats, corners: Floats, begins: Floats) -> Floats:
-    """Return the angles (n,), rad, about corners from where moves end to where the next begin.
-
-    All points are (n, 2), mm.
-    """
-    (ux, uy), (vx, vy) = (ends - corners).T, (begins - corners).T
-    return np.asarray(np.abs(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)))
+def _inserted_before(source: Ints, counts: Ints) -> Ints:
+    """Return how many moves are inserted in the line of each row (n,) before it and its own."""
+    before = np.cumsum(counts - 1) - (counts - 1)
+    return np.asarray(before - before[np.searchsorted(source, source)])
 
 
 def _feeds(before: gx.Toolpath, after: gx.Toolpath, row: Ints) -> Floats:

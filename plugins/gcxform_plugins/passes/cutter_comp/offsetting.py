@@ -19,6 +19,10 @@ from enum import StrEnum
 from itertools import pairwise
 from math import atan2, ceil, hypot, pi, sqrt, tau
 
+import numpy as np
+
+from gcxform.vocabulary import Floats
+
 Point = tuple[float, float]
 
 SHARP = 0.05  # rad; controls differ on corners that are sharper
@@ -347,3 +351,12 @@ def _angle(one: Point, other: Point, centre: Point) -> float:
     ux, uy = one[0] - centre[0], one[1] - centre[1]
     vx, vy = other[0] - centre[0], other[1] - centre[1]
     return atan2(ux * vy - uy * vx, ux * vx + uy * vy)
+
+
+def turns_about(ends: Floats, corners: Floats, begins: Floats) -> Floats:
+    """Return the angles (n,), rad, about corners from where moves end to where the next begin.
+
+    All points are (n, 2), mm.
+    """
+    (ux, uy), (vx, vy) = (ends - corners).T, (begins - corners).T
+    return np.asarray(np.abs(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)))

@@ -21,11 +21,29 @@ def paired_rows(before: gx.Toolpath, after: gx.Toolpath) -> tuple[Ints, Ints]:
     lines, first, old = np.unique(before.source, return_index=True, return_counts=True)
     new = np.bincount(np.searchsorted(lines, after.source), minlength=len(lines))
     more = new - old
-    if len(new) != len(lines) or ((more != 0) & ((more != 1) | (old != 1))).any():
+    if len(new) != len(lines) or ((more < 0) | (more > np.where(old > 2, 0, old))).any():
         _fail(before, 0, "moves are missing or too many")
-    counts[first[more == 1]] = 2
+    begin = np.cumsum(new) - new
+    later = (more == 1) & (old == 2)
+    later[later] = _goes_along(before, first[later], after, begin[later])
+    counts[(first + later)[more > 0]] = 2
+    counts[first[more == 2] + 1] = 2
     main = np.cumsum(counts) - 1
     return main, np.where(counts == 2, main - 1, -1)
+
+
+def _goes_along(before: gx.Toolpath, rows: Ints, after: gx.Toolpath, others: Ints) -> Flags:
+    """Return which rows of the centre path may be straight moves beside rows of the contour.
+
+    A block with a piece in its corner is two moves, of which either may have a corner before it.
+    """
+    u, v = (
+        np.nan_to_num(path.end[at, :3] - path.start[at, :3])
+        for path, at in ((before, rows), (after, others))
+    )
+    across = np.sqrt((np.cross(u, v) ** 2).sum(axis=1))
+    size = np.sqrt((u**2).sum(axis=1) * (v**2).sum(axis=1))
+    return np.asarray((after.kind[others] == before.kind[rows]) & (across <= CLOSE * size + CLOSE))
 
 
 def check_same(before: gx.Toolpath, after: gx.Toolpath, main: Ints, corner: Ints) -> None:
