@@ -34,7 +34,7 @@ SCOPES: Final = {
 _OF: Final = {name: scope for scope, names in SCOPES.items() for name in names.split()}
 PLACES: Final = {
     "BLOCK_DELETE": r"^[ \t]*",
-    "LABEL": r"^[ \t]*",
+    "LABEL": "|".join((r"(?:^[ \t]*", *(rf"(?<=^N[0-9]{{{n}}} )" for n in range(1, 6)))) + ")",
     "M99_P": r"(?:(?<=\])|(?<=\][ \t]))",
     "FUNCTION": r"(?<==)",
     "STRING": r"(?<=\b[A-Z]=)",
