@@ -332,7 +332,10 @@ def _lacking(word: Word, dialect: type[Dialect]) -> Refusal | None:
     known = address in dialect.axes or address in dialect.block_rule.words or address in CODES
     known |= address in {f",{letter}" for letter in dialect.motion_rule.corners}
     if not known or (address == "O" and not dialect.program_rule.has_program_number):
-        return Refusal("GX201", word.start, width, f"{dialect.name} has no word {address}")
+        message = f"{dialect.name} has no word {address}"
+        if address[0] == ",":
+            message = f"what {address} puts into the corner on a {dialect.name} is not known"
+        return Refusal("GX201", word.start, width, message)
     if address == "O" and not program_number_fits(word, dialect):
         digits = dialect.program_rule.number_digits
         message = f"{dialect.name} has program numbers of at most {digits} digits"

@@ -50,6 +50,8 @@ TIPS = replace(NO_PLANES, planes={"G43.4": "follow-tip"})
 UNTITLED = replace(Fanuc.program_rule, has_title=False)
 NO_ASIDES = replace(Fanuc.text_rule, asides=False)
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
+NO_CORNERS = replace(Fanuc.motion_rule, corners="")
+"""What the others put into a corner by `,R` and `,C` is not looked up: refused."""
 
 
 class Mazak(Fanuc):
@@ -57,6 +59,7 @@ class Mazak(Fanuc):
 
     name = "mazak"
     kin = "fanuc"
+    motion_rule = NO_CORNERS
     tip_rule = TIPS
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
@@ -69,6 +72,7 @@ class Mitsubishi(Fanuc):
 
     name = "mitsubishi"
     kin = "fanuc"
+    motion_rule = NO_CORNERS
     tip_rule = TIPS
     flow_rule = CALLS_ALONE
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
@@ -90,6 +94,7 @@ class Syntec(Fanuc):
 
     name = "syntec"
     kin = "fanuc"
+    motion_rule = NO_CORNERS
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
@@ -122,6 +127,7 @@ class Brother(Fanuc):
 
     name = "brother"
     kin = "fanuc"
+    motion_rule = NO_CORNERS
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
@@ -147,6 +153,7 @@ class Hurco(Fanuc):
 
     name = "hurco"
     kin = "fanuc"
+    motion_rule = NO_CORNERS
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
