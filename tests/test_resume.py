@@ -393,3 +393,14 @@ def test_modal_codes_that_no_preamble_states_are_unsafe() -> None:
         text = f"{HEAD}{block}\nG1 X1.\nX2.\nM30\n".encode()
         with pytest.raises(gx.InputError, match=f"in line 4 {code} was in force"):
             Restart(Acme, Source.of_bytes(text), Reading(), 6)
+
+
+@pytest.mark.parametrize(("line", "safe"), [(4, True), (5, False), (6, False), (7, True)])
+def test_no_restart_is_safe_behind_a_corner(tmp_path: Path, line: int, safe: bool) -> None:
+    text = (
+        b"G21 G17 G90 G54 G94 G40 G0 X0 Y0 Z0\nG1 F100.\nX10.\nX50. ,R5.\nY50. ,C3.\nX0\nY0\nM30\n"
+    )
+    (tmp_path / "p.nc").write_bytes(text)
+    found = call("resume", "-f", "fanuc", "--line", str(line), str(tmp_path / "p.nc"))
+    assert (found.exit_code == 0) is safe, found.stderr
+    assert safe or "ends in a corner" in found.stderr

@@ -98,17 +98,26 @@ class Corners:
         feed, mode = path.feed, path.feed_mode
         same = (feed[row] == feed[row + 1]) | (np.isnan(feed[row]) & np.isnan(feed[row + 1]))
         same &= (mode[row] == mode[row + 1]) & (mode[row] != FeedMode.INVERSE_TIME)
+        same &= ~(np.isnan(feed[row]) & self._says_behind("F"))
         message = "the feed is another one behind the corner: at which {} is cut is not known"
         found = self._refuse(~same, message)
         side = np.append(np.int8(at_side), path.side)
         begins = (side[row] != side[row + 1]) | (side[row + 1] != side[row + 2])
-        message = "{} at a move that begins or ends cutter compensation is not followed"
+        begins |= (side[row + 1] != 0) & self._says_behind("D")
+        message = "{} at a move that begins, ends or changes cutter compensation is not followed"
         found |= self._refuse(begins, message)
         other = (path.plane[row] != path.plane[row + 1]) | (path.frame[row] != path.frame[row + 1])
         plain = [[_keeps_shapes(frame, plane) for plane in Plane] for frame in path.frames]
         other |= ~np.array(plain, np.bool_)[path.frame[row], path.plane[row]]
         message = "{} where coordinates change, or are scaled, tilted or polar, is not followed"
         return self._refuse(other, message) or found
+
+    def _says_behind(self, address: str) -> Flags:
+        """Return the corners behind which a block has a word."""
+        word = self.lines.word(address)
+        return np.asarray(
+            np.zeros(len(self.line), np.bool_) if word is None else word[1][self.line + 1]
+        )
 
     # --- where it is ---
 
