@@ -53,6 +53,12 @@ MUTATIONS = (
         f"{FANUC}-at-g41]",
     ),
     _corner(
+        "another tool behind a corner is the same",
+        'begins |= (side[row + 1] != 0) & self._says_behind("D")',
+        "pass",
+        f"{FANUC}-at-g41]",
+    ),
+    _corner(
         "axes beside the plane may move behind it",
         "for nth in (0, 1):",
         "for nth in (0,):",
