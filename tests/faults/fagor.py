@@ -87,8 +87,8 @@ MUTATIONS = (
     Mutation(
         "fagor: what says how near to a corner is left out for the same control",
         BLOCKS,
-        "if head in tables.INERT and self.reading.asides:",
-        "if False:",
+        "        if not self.reading.asides:\n            return []\n        text = code",
+        "        if item:\n            return []\n        text = code",
         f"{CASE}compensated-with-asides]",
     ),
     Mutation(
@@ -566,5 +566,19 @@ MUTATIONS = (
         "if codes.keys() - BACK or self.back != self.hole.code:",
         "if self.back != self.hole.code:",
         f"{CASE}drilling-then-another-block]",
+    ),
+    Mutation(
+        "fagor: what is switched off does not go along",
+        BLOCKS,
+        "        if not self.reading.asides:\n            return []\n        text = code",
+        "        if 'OFF' in item.name:\n            return []\n        text = code",
+        f"{CASE}whole-switched-off]",
+    ),
+    Mutation(
+        "fagor: variables that outlive the program are set no more, and nobody is told",
+        COMPUTING,
+        'name.startswith("V.S.")',
+        "False",
+        f"{CASE}whole-switched-off]",
     ),
 )

@@ -1478,4 +1478,32 @@ MUTATIONS = (
         "return []",
         f"{CASES}[dialects/siemens/archive-compensated]",
     ),
+    Mutation(
+        "siemens: RET, by which a caller goes on, is gone where the program is written anew",
+        DECIDING,
+        "        if not self.calls and self.reading.crosses:\n",
+        "        if False:\n",
+        "tests/test_corpus.py::test_case[dialects/siemens/whole-returns]",
+    ),
+    Mutation(
+        "siemens: SAVE of a program that others call is gone where it is written anew",
+        CALLS,
+        "        if not self.calls and self.reading.asides:\n",
+        "        if False:\n",
+        "tests/test_corpus.py::test_case[dialects/siemens/whole-saves]",
+    ),
+    Mutation(
+        "siemens: a swivel that is ended does not go along",
+        CYCLE_CALLS,
+        "            elif self.reading.asides:\n",
+        "            elif False:\n",
+        "tests/test_corpus.py::test_case[dialects/siemens/whole-switched-off]",
+    ),
+    Mutation(
+        "siemens, fagor: a tip that is no longer followed does not go along",
+        "plugins/gcxform_plugins/dialects/shared/tips_left.py",
+        "translator.reading.asides and not translator.following",
+        "False",
+        "tests/test_corpus.py::test_case[dialects/siemens/whole-switched-off]",
+    ),
 )

@@ -9,6 +9,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables as tables
 from gcxform_plugins.dialects.fagor.places import Places, code_of
 from gcxform_plugins.dialects.fagor.structure import code
+from gcxform_plugins.dialects.shared.tips_left import goes_along
 
 PLANES = frozenset({"G17", "G18", "G19"})
 END = frozenset({"M2", "M30"})
@@ -342,24 +343,30 @@ class Blocks(gx.Translator):
         inside = item.names[1:]
         if len(items) > 1:
             self.refuse(f"{name} is not resolved: it is read in a block of its own", item, ALONE)
+        off = rest == ["OFF"] and (goes_along(self) if head == "#RTCP" else not self.machine)
+        along = self._along(item) if off or head not in ("#RTCP", "#MCS") else []
         if head == "#RTCP" and rest in (["ON"], ["OFF"]) and not inside:
-            return [self._tips(item, rest == ["ON"])]
+            return along or [self._tips(item, rest == ["ON"])]
         if head == "#MCS" and rest in (["ON"], ["OFF"]) and not inside:
             self._machine(item, rest == ["ON"])
-            return []
+            return along
         if head == "#KIN" and rest == ["ID"]:
             self._kinematics(item, inside)
-            return []
-        if head in tables.INERT and self.reading.asides:
-            text = code(self.lines[self.line])
-            if "CONTERROR" in text.upper() and any(map(INCHES.search, self.lines)):
-                self.refuse("a contour error beside G70 and moves that are written anew", item)
-            return [gx.Speller.along(text[text.index("#") :].strip())]
+            return along
         if head in tables.INERT or (head in tables.OFF and rest[:1] == ["OFF"]):
-            return []
+            return along
         what = tables.STATEMENTS.get(head, "it is not known here")
         what = "this form of it is not known here" if head in ("#RTCP", "#KIN") else what
         self.refuse(f"{name} is not resolved: {what}", item)
+
+    def _along(self, item: gx.Item) -> list[str]:
+        """Return the block of a statement that goes along where all is written anew; or none."""
+        if not self.reading.asides:
+            return []
+        text = code(self.lines[self.line])
+        if "CONTERROR" in text.upper() and any(map(INCHES.search, self.lines)):
+            self.refuse("a contour error beside G70 and moves that are written anew", item)
+        return [gx.Speller.along(text[text.index("#") :].strip())]
 
     def _machine(self, item: gx.Item, on: bool) -> None:
         """Take coordinates of the machine, or those of the program again. Raises InputError."""

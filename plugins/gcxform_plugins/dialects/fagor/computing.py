@@ -25,6 +25,7 @@ OWN = re.compile(r"V\.[PS]\.[A-Z0-9_]+")
 LOCALS = range(100)
 """Numbers of parameters that end with a level of calls; others are those of all programs."""
 SET_IT = "set it to a number in the program before"
+UNSET = "what is written sets no parameter: what runs behind it, or calls it, may not read them"
 LARGEST = 1e9
 DECIMALS = 9  # of a computed word: far below what the control resolves
 Node = Tree[Token]
@@ -190,6 +191,10 @@ class Computing(Drilling):
         if name[0] == "V" and not OWN.fullmatch(name):
             raise v.NoValueError(f"what setting {name} does is not certain", code="GX206")
         self.check_set(node, name)
+        if self.reading.asides and (
+            name.startswith("V.S.") or (name[0] == "P" and int(name[1:]) not in LOCALS)
+        ):
+            self.assumed[UNSET] = None
         try:
             found = self.values.value(value)
             if str(sign) != "=":

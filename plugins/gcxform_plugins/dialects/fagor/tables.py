@@ -108,7 +108,8 @@ STATEMENTS: Mapping[str, str] = {
 INERT = frozenset({"#HSC", "#ROUNDPAR", "#SLOPE", "#FLUSH", "#MSG"})
 """Statements about speed, corners and messages: no axis goes to another place for them."""
 OFF = frozenset({"#CS", "#ACS", "#MCS", "#TLC", "#CSROT", "#TOOL", "#DEFROT"})
-"""Statements whose ON is refused, so that their OFF says nothing."""
+"""Statements whose ON is refused: their OFF ends what may be in force since before the program, and
+goes along where that is written anew for the same control."""
 
 KINDS: Mapping[str, str] = {
     "ambiguous": "whether this I makes the coordinate incremental, or is a centre, is not certain",

@@ -219,6 +219,8 @@ class Calls(Computing):
 
     def _proc(self, node: Node) -> None:
         """Take parameters: those of a call are known already."""
+        if not self.calls and self.reading.asides:
+            self.refuse("PROC begins a program that others call: they find what it leaves to them")
         if not self.calls:
             super()._proc(node)
 

@@ -34,6 +34,8 @@ class CycleCalls(Statements):
             self._one(line, "alone", item)
             if name in TELLING or name in ("CYCLE832", "FGROUP"):
                 self._goes_along(line, item, "", self.text_of(item))
+            elif self.reading.asides:
+                line.asides.append(self.text_of(item))
         else:
             why = WHY.get(name, f"{name}(...) is not read")
             self.refuse(f"{why}, with these arguments" if name in WHY else why, item)

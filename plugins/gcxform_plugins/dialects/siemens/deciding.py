@@ -290,6 +290,8 @@ class Deciding(Variables):
         if len(node.children) > 1:
             self._elsewhere("RET(...) goes on where the caller says")
             return
+        if not self.calls and self.reading.crosses:
+            self.refuse("RET returns to a program that is not here")
         self.at = self.part.stop if self.calls else len(self.lines)
 
     # --- what only the machine decides ---

@@ -117,7 +117,8 @@ kept as it stands, with all that is lost behind it.
 | these set, in a line that does nothing else | it stays; none of X Y Z A B C moves | [K] |
 | `$TC_...=`, `$P_UIFR[...]=` | data of tools lose X, Y, Z; zeros lose all axes | W1 13, K2 741 |
 | SETAL, SETMS, FGROUP, ACC[], FA[] | tell, or say how fast: they move nothing | PM |
-| PROC, what nobody calls | its parameters are not known | |
+| PROC, what nobody calls | its parameters are not known; not written anew | |
+| RET, what nobody calls | ends the program; written for others or anew: refused, as M17 is | |
 | `NAME(...)`, `L10 P2` | `NAME.SPF`, `.MPF` beside the program; VAR is the caller's own | PM |
 | `%_N_NAME_MPF` | begins a program; calls find the others of the file; two MPF: refused | PM 43 |
 | what is left out of a call | its default in PROC, or 0 | PM |

@@ -7,6 +7,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.shared.tips_left import goes_along
 from gcxform_plugins.dialects.siemens import cycles as cycles
 from gcxform_plugins.dialects.siemens.asides import (
     BLENDS,
@@ -373,12 +374,15 @@ class Statements(gx.Translator):
             self.drilling = None
         elif name in ("CYCLE800", "CYCLE832") and self._quiet(name, [""]):
             self._one(line, "alone", item)
-            line.asides += [f"{name}()"] if name == "CYCLE832" else []
+            line.asides += [f"{name}()"] if name == "CYCLE832" or self.reading.asides else []
         else:
             self.refuse(WHY.get(name, f"{name} is not read"), item)
 
     def _switched(self, line: Line, item: gx.Item, name: str) -> None:
-        self._one(line, "act", item, ("M128" if name == "TRAORI" else "M129", item))
+        along = name == "TRAFOOF" and goes_along(self)
+        line.asides += [name] if along else []
+        code = "" if along else "M128" if name == "TRAORI" else "M129"
+        self._one(line, "act", item, (code, item))
 
     def _call(self, line: Line, item: gx.Item) -> None:
         """Take a call with arguments."""
