@@ -21,6 +21,7 @@ from typing import Any, ClassVar, NoReturn
 
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow import slashes
 from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item
 from gcxform.flow.learned import SOON, Learned
@@ -356,9 +357,8 @@ class Translator(LineShapes):
             return False
         policy = self.reading.blocks_with_a_slash(self.dialect)
         if not policy:
-            message = "a switch of the control decides whether this block is executed"
-            hint = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'
-            raise self.refusal("GX211", message, slash, hint)
+            raise self.refusal("GX211", slashes.OPEN, slash, slashes.SAY)
+        self.assumed |= {slashes.TOLD[policy]: None} if self.reading.crosses else {}
         return policy == "skip"
 
     # --- refusals ---

@@ -1506,4 +1506,11 @@ MUTATIONS = (
         "False",
         "tests/test_corpus.py::test_case[dialects/siemens/whole-switched-off]",
     ),
+    Mutation(
+        "siemens, heidenhain, fagor: slashes that are gone are not told of",
+        "gcxform/flow/translation.py",
+        "if self.reading.crosses else {}",
+        "if not self.reading.crosses else {}",
+        "tests/test_corpus.py::test_case[dialects/siemens/whole-slash]",
+    ),
 )

@@ -1,0 +1,9 @@
+"""Blocks with a slash in programs that are written anew: a switch decides on them no more."""
+
+OPEN = "a switch of the control decides whether this block is executed"
+SAY = 'block-delete = "execute" in [input], or block-delete = "skip" in [input]'
+TOLD = {
+    "execute": "blocks with a slash are executed, and written without it: no switch skips them",
+    "skip": "blocks with a slash are skipped, and left out: no switch has them executed",
+}
+"""What is said of them, by what `block-delete` says."""
