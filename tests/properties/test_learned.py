@@ -158,13 +158,14 @@ def test_where_axes_are_is_known_behind_lines_that_were_learnt(
         lambda k: f"G{700 + 10 * (k // 20)} X{k}",
         lambda k: f"X={k} Y=R1" if k < 20 else f"X={-k} Y=R2",
         lambda k: f"X-{k} Y=-R1",
+        lambda k: f"R1={k}" if k % 3 else f"G1 X=R1 Y{k}",
         lambda k: f"G91 X{k}",
         lambda k: f"X{k} Y+{k} Z=R1+{k}",
     ],
 )
 def test_lines_of_one_shape_in_a_row(line: Callable[[int], str]) -> None:
     """Codes, digits and states that change in a row of lines that are known."""
-    known = [text for _ in range(9) for text in ("G1 X1", "X2", "G90", "G91 X1")]
+    known = [text for _ in range(9) for text in ("G1 X1", "X2", "G90", "X3 Y1")]
     rows = [*known, "X2", "G90", *map(line, range(30)), "X2", "G90", *map(line, range(15, 30))]
     text = "\n".join(["G90 G17 G1 F9 X1 Y1 Z1", "R1=1.5 R2=2", *rows, "M30", ""])
     for reading in READINGS:

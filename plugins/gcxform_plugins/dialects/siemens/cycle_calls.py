@@ -32,7 +32,7 @@ class CycleCalls(Statements):
                 self.refuse(f"{name}: {error}", item)
         elif self._quiet(name, given):
             self._one(line, "alone", item)
-            if name in TELLING or name in ("CYCLE832", "FGROUP"):
+            if name != "CYCLE800":
                 self._goes_along(line, item, "", self.text_of(item))
             elif self.reading.asides:
                 line.asides.append(self.text_of(item))
