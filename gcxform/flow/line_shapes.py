@@ -143,21 +143,23 @@ class LineShapes(ABC):
         shape = self._shapes.get(key)
         if shape is not None:
             return shape, found
-        fixed = self._fixed.get(key)
-        if fixed is not None:
-            shape = self._partly.get((key, *[found[k] for k in fixed]))
-            if shape is not None:
-                return shape, [number for k, number in enumerate(found) if k not in fixed]
+        shape = self._shape_in_part(key, found)
+        if shape is not None:
+            fixed = self._fixed[key]
+            return shape, [number for k, number in enumerate(found) if k not in fixed]
         return self._new_shape(line, self.lines[line] if text is None else text, key, found)
 
     def known_shape(self, ahead: Ahead, k: int) -> Shape | None:
         """Return the shape of one of the lines ahead, if there was one like it."""
         key = ahead.keys[k]
-        shape = self._shapes.get(key)
-        if shape is None and (fixed := self._fixed.get(key)) is not None:
-            at = ahead.starts[k]
-            shape = self._partly.get((key, *[ahead.numbers[at + slot] for slot in fixed]))
-        return shape
+        return self._shapes.get(key) or self._shape_in_part(key, ahead.numbers, ahead.starts[k])
+
+    def _shape_in_part(self, key: str, numbers: Sequence[str], at: int = 0) -> Shape | None:
+        """Return the shape of a key with these numbers in its names and comments, if known."""
+        fixed = self._fixed.get(key)
+        if fixed is None:
+            return None
+        return self._partly.get((key, *[numbers[at + slot] for slot in fixed]))
 
     def _split_ahead(self, line: int) -> tuple[Ahead, int]:
         """Return some lines, each without its numbers, and with them; which of them is `line`."""

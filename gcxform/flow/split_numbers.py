@@ -1,6 +1,6 @@
 """A text split at its numbers, many lines at once: bytes are mapped and runs of them closed up.
 
-An expression looks at each number; here a line of plain words costs a third of that. Where signs,
+An expression looks at each number; here a line of plain words costs half of that. Where signs,
 points and digits stand together otherwise than in plain numbers the expression does it.
 """
 
@@ -16,6 +16,7 @@ BETWEEN = str.maketrans({chr(code): " " for code in range(128) if chr(code) not 
 DIGITS = str.maketrans(dict.fromkeys("123456789", "0"))
 CLOSED = ("0" * 8, "0" * 4, "00", "00")
 TWICE = (".0.", "..", "++", "+-", "-+", "--")
+"""What plain numbers have not: two points or two signs in a row."""
 PLAIN = ("0.0", "0.", ".0", "+0", "-0")
 ODD = ("00", ".", "+0", "-0", "0+", "0-")
 """What is left of numbers that are not plain, once plain ones have become a 0 each."""

@@ -46,8 +46,8 @@ MUTATIONS = (
     Mutation(
         "shapes: a number in a name is any number",
         "gcxform/flow/line_shapes.py",
-        "            shape = self._partly.get((key, *[found[k] for k in fixed]))\n",
-        "            shape = next((s for k, s in self._partly.items() if k[0] == key), None)\n",
+        "        return self._partly.get((key, *[numbers[at + slot] for slot in fixed]))\n",
+        "        return next((s for k, s in self._partly.items() if k[0] == key), None)\n",
         f"{OF_TREES}::test_what_is_no_number_of_a_line_is_of_its_shape",
     ),
     Mutation(

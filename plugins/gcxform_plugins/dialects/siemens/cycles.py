@@ -13,7 +13,6 @@ import gcxform as gx
 
 CALLED = re.compile(r"([A-Z_]\w*)[ \t]*\((.*)\)", re.IGNORECASE | re.DOTALL)
 PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
-NUMBER = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
 SECONDS = "10"
 """AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
 MODES = 3
@@ -116,7 +115,7 @@ def _depth(absolute: str, below: str, level: Decimal, *names: str) -> str:
 def _nothing_more(rest: Sequence[str]) -> None:
     """Refuse arguments behind those that are read: GMODE, DMODE, AMODE. Raises CycleError."""
     others = [x for k, x in enumerate(rest) if not (k == MODES - 1 and x == SECONDS)]
-    if any(x and not (NUMBER.fullmatch(x) and Decimal(x) == 0) for x in others):
+    if any(x and not (gx.NUMBER.fullmatch(x) and Decimal(x) == 0) for x in others):
         raise CycleError("an argument behind the depth is not read")
 
 
@@ -257,7 +256,7 @@ MOST = 9999  # holes of a pattern
 
 def _number(text: str, what: str) -> str:
     """Return an argument that is a number. Raises CycleError."""
-    if not NUMBER.fullmatch(text):
+    if not gx.NUMBER.fullmatch(text):
         raise CycleError(f"{what} is not a plain number")
     return text
 
@@ -279,7 +278,9 @@ def keeps_path(given: Sequence[str], following: bool) -> bool:
     """
     if given == [""]:
         return True
-    if len(given) not in (2, 3, 4) or not all(NUMBER.fullmatch(x) for x in (given[0], *given[2:])):
+    if len(given) not in (2, 3, 4) or not all(
+        gx.NUMBER.fullmatch(x) for x in (given[0], *given[2:])
+    ):
         return False
     if DIGITS.fullmatch(given[1]):
         tens = given[1].zfill(2)[-2]
@@ -292,4 +293,4 @@ def swivels_nowhere(given: Sequence[str]) -> bool:
     if len(given) not in (14, 15, 16) or given[0] != NO_RETRACT:
         return False
     numbers = given[4:13]
-    return all(not x or (NUMBER.fullmatch(x) and not Decimal(x)) for x in numbers)
+    return all(not x or (gx.NUMBER.fullmatch(x) and not Decimal(x)) for x in numbers)
