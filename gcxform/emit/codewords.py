@@ -182,7 +182,8 @@ class CodeWords:
         _, other = m_codes_of(self.manner, number)
         words = {word.address for word in self.shape.block.words}
         said = self.saying.instead(name) != name
-        if other is None or code is None or not (said or same_m(code, other, words)):
+        own = code is other and self.source.name == self.target.name
+        if other is None or code is None or not (said or own or same_m(code, other, words)):
             self.draft.refuse(word, name, self._way_out(name, code))
 
     def _way_out(self, name: str, code: MCode | None) -> str:

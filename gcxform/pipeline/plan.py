@@ -290,7 +290,7 @@ class Plan:
         for file in filter(None, (step.demands.written_for for step in self.path_passes)):
             offsets, homes = file.machine.work_offsets, file.machine.homes
             reading = replace(reading, work_offsets=offsets, homes=homes)
-        if self.source is not self.target:  # of its codes the machine file says nothing
+        if self.source.name != self.target.name:  # of its codes the machine file says nothing
             reading = replace(reading, inert_m=frozenset())
         return replace(reading, units=self.first_units)
 

@@ -174,7 +174,8 @@ class Visit:
         """Return what a finding asks for that nothing is given for, with the values it names."""
         asked: dict[Question, list[Any]] = {}
         for question, value in questions(each.hint):
-            for one in self.used.named(question):
+            names_codes = question == INERT and value
+            for one in (question,) if names_codes else self.used.named(question):
                 if self._is_new(one, value) and not (behind and _of_the_state(one)):
                     asked.setdefault(one, []).append(ON_TRIAL.get(kind_of(one), value))
         return asked

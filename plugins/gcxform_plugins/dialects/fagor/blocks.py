@@ -12,8 +12,6 @@ from gcxform_plugins.dialects.fagor.structure import code
 from gcxform_plugins.dialects.shared.tips_left import goes_along
 
 PLANES = frozenset({"G17", "G18", "G19"})
-END = frozenset({"M2", "M30"})
-ALONE = "write it in a block of its own"
 NO_EDGE = "which D is in force after a tool change that names none is the control's choice"
 EDGE_EARLY = "whether a D acts before the tool that it is for is changed is not certain"
 ACROSS = "in G18 and G19 the length of the tool may be across the plane, and not along Z"
@@ -146,7 +144,7 @@ class Blocks(gx.Translator):
         yield from [" ".join(words)] if words else []
         yield from [length] if length else []
         yield from after
-        if END & {*codes}:
+        if {"M2", "M30"} & codes.keys():
             self.at = len(self.lines)
 
     def _check(self, item: gx.Item) -> None:
@@ -162,7 +160,10 @@ class Blocks(gx.Translator):
             self.refuse(f"G70 is not resolved: {tables.INCHES}", item, tables.SAY_INCHES)
         if code in tables.REFUSED:
             self.refuse(f"{code} is not resolved: {tables.REFUSED[code]}", item)
-        if code and code not in tables.CODES | tables.M_CODES:
+        own = tables.own_m(code)
+        if own is not None and own not in self.reading.inert_m:
+            self.refuse(f"{code}: {tables.OWN_M}", item, tables.SAY_OWN_M.format(own))
+        if code and own is None and code not in tables.CODES | tables.M_CODES:
             raise self.refusal("GX201", f"what {code} does on a fagor is not known here", item)
         words = tables.AXES if item.kind == "incremental" else tables.WORDS
         if item.kind in ("word", "incremental") and item.name not in words:
@@ -286,7 +287,7 @@ class Blocks(gx.Translator):
             raise self.refusal("GX203", "T, D or M6 stands here twice", items[-1])
         for name in {"D", "M6"} & words.keys() if moved else ():
             what = f"{name} beside a move: which is first is not certain"
-            self.refuse(what, words[name], ALONE)
+            self.refuse(what, words[name], tables.ALONE)
         if "T" in words:
             self.tool, self.edge, self.changing = self._whole(words["T"]), "", True
         if "D" in words:
@@ -339,10 +340,10 @@ class Blocks(gx.Translator):
         """Return the blocks of a statement. Raises InputError."""
         item = next(item for item in items if item.kind == "statement")
         head, *rest = item.name.split()
-        name = " ".join([head, *rest])
+        name = " ".join((head, *rest))
         inside = item.names[1:]
         if len(items) > 1:
-            self.refuse(f"{name} is not resolved: it is read in a block of its own", item, ALONE)
+            self.refuse(f"{name} is read in a block of its own", item, tables.ALONE)
         off = rest == ["OFF"] and (goes_along(self) if head == "#RTCP" else not self.machine)
         along = self._along(item) if off or head not in ("#RTCP", "#MCS") else []
         if head == "#RTCP" and rest in (["ON"], ["OFF"]) and not inside:
@@ -355,8 +356,8 @@ class Blocks(gx.Translator):
             return along
         if head in tables.INERT or (head in tables.OFF and rest[:1] == ["OFF"]):
             return along
-        what = tables.STATEMENTS.get(head, "it is not known here")
-        what = "this form of it is not known here" if head in ("#RTCP", "#KIN") else what
+        form = "this form of it is not known here" if head in ("#RTCP", "#KIN") else ""
+        what = form or tables.STATEMENTS.get(head, "it is not known here")
         self.refuse(f"{name} is not resolved: {what}", item)
 
     def _along(self, item: gx.Item) -> list[str]:

@@ -70,6 +70,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | D2 and more | another edge of the tool: refused |
 | no D behind M6 | which is in force is not certain: moves are refused up to a D |
 | D between T and M6 | holds from M6 on; moves before M6 are refused |
+| other M codes | of the machine: refused, but for `inert-m`; for a Fagor the line stays |
 | T, M6, D beside a move | M6 and D: refused |
 | `#RTCP ON`, `#RTCP OFF` | the control follows the tip, or not; other forms are refused |
 | `#KIN ID[1]` | chooses what is in the machine file; while following, or a second one: refused |
@@ -138,7 +139,11 @@ class Fagor(gx.Dialect):
         gx.Setting("subroutine-locals", "fagor: P0 to P99 in LL, L, #CALL", ("shared", "own")),
     )
     program_rule = gx.ProgramRule(has_percent=False, has_program_number=False)
-    block_rule = gx.BlockRule(words="DFHIJKNPQRST", m_order_chosen=True)
+    block_rule = gx.BlockRule(
+        words="DFHIJKNPQRST",
+        m_order_chosen=True,
+        unknown_m=gx.MCode("user", loses_position=True),
+    )
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(absolute=0.01)

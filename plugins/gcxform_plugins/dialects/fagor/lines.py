@@ -149,8 +149,8 @@ class Lines(gx.Speller):
 
     def _code(self, name: str) -> Iterator[str]:
         """Yield the word for a code, if it has one. Raises UnspeakableError."""
-        if name[0] == "M" and name not in tables.M_CODES:
-            raise gx.UnspeakableError(f"{name} is a function of the machine")
+        if name[0] == "M" and name in tables.OF_BLOCKS:
+            raise gx.UnspeakableError(f"{name} is of blocks, and no function of a Fagor")
         if name[0] == "G" and name not in SAME and name not in CODES:
             raise gx.UnspeakableError(f"{name} has no words on a Fagor")
         if name != "M6" and (said := CODES.get(name, name)):

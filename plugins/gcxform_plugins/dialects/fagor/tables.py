@@ -22,6 +22,13 @@ COMP = frozenset(("G41", "G42"))
 """Codes that move the path beside the contour, by the radius of the tool whose D1 is in force."""
 CODES = PLAIN | UNSAID | WORK | COMP | {*OTHER, "G4", "G6", "G90", "G91", "G159"}
 M_CODES = frozenset(f"M{code}" for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30))
+OF_BLOCKS = frozenset(("M128", "M129", "M9000", "M9001"))
+"""M codes that say among the blocks what a Fagor has other words for."""
+ALONE = "write it in a block of its own"
+OWN_M = "what it does is up to the machine's builder"
+SAY_OWN_M = (
+    "inert-m = [{}] in [control] of the machine file, if it moves nothing; else use `absolute`"
+)
 WORDS = PLAIN_WORDS | {"T", "D"}
 LACKING = {
     "P": "parameters are computed by the control",
@@ -122,3 +129,9 @@ HINTS = {
     "ambiguous": "write X10I for an incremental coordinate, X10 I5 for a centre",
     "old": "write comments behind a semicolon; let the CAM write a program for an 8065",
 }
+
+
+def own_m(code: str) -> int | None:
+    """Return the number of an M code that is neither of the control nor of blocks."""
+    own = code[:1] == "M" and code[1:].isdigit() and code not in M_CODES | OF_BLOCKS
+    return int(code[1:]) if own else None

@@ -64,6 +64,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | both at once, another shift under them, scales but 1 | refused | |
 | cycle 9 | a dwell in seconds | 640, p. 631 |
 | cycle 32 | T is how far the path may be off, as G64 P; its other lines: nothing | 620, p. 276 |
+| other M below 89 | of the builder: refused, but for `inert-m`; `absolute` keeps the line | |
 | cycle 32 without T | the builder's tolerance, known to none: G61, no tolerance | klartext-portal |
 | PLANE RESET STAY | cancels what is refused here | [K] |
 | PLANE SPATIAL with angles of 0, STAY | the same where no axis is turned | [K] |
@@ -140,6 +141,7 @@ class Heidenhain(gx.Dialect):
         9001: gx.MCode("along", takes="P"),
         9000: gx.MCode("kept", loses_position=True, takes="P"),
     }
+    block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True))
     settings = (
         gx.NumberSetting("preset", "heidenhain: which preset of cycle 247 G54 of this file is"),
     )

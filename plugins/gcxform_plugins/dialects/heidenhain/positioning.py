@@ -30,6 +30,8 @@ MOVES_ZERO = frozenset({115, 145})
 """Those of them behind which coordinates are others, if what they cancel has been."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
 POINT_OF_M92 = "X, Y, Z = ... in [home.M92] of the machine file say where, in its coordinates"
+OF_BUILDER = "what it does is up to the machine's builder"
+INERT = "inert-m = [{}] in [control] of the machine file, if it moves nothing; else use `absolute`"
 WHY = {
     89: "it calls a cycle behind each block",
     92: "it counts from a point of the machine that its builder has set",
@@ -210,6 +212,9 @@ class Saying(Words):
             self.refuse(
                 f"M{code} is not resolved: {WHY.get(code, 'what it does is not known')}", item
             )
+        own = code not in AT_START and code not in self.dialect.m_codes
+        if own and code not in self.reading.inert_m:
+            self.refuse(f"M{code} is not resolved: {OF_BUILDER}", item, INERT.format(code))
         return AT_START.get(code, (f"M{code}",))
 
     def _at_end(self, code: int) -> Sequence[str]:

@@ -126,6 +126,7 @@ kept as it stands, with all that is lost behind it.
 | SAVE | motion, G90 and the frame as before; refused where other modes differ | K2 2-108 |
 | MCALL of one, RET with a label, M30 in one, calls of itself | refused | |
 | subprograms that are not there, synchronous actions, DEFINE | refused | |
+| other M codes | of the machine: refused, but for `inert-m`; for a SINUMERIK they stay | |
 | M128, M129 | M codes of the machine: refused, as blocks say TRAORI with them | |
 | `/`, `/0` to `/9` | a switch decides: `block-delete` in `[input]` | [K] |
 | `MSG("..."<<R1)` | a comment; of unknown values: left out | PM |
@@ -210,7 +211,7 @@ class Siemens(gx.Dialect):
         gx.Setting("section-repeats", "siemens: what P of REPEAT counts", ("further", "in-all")),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )
-    block_rule = gx.BlockRule(m_order_chosen=True)
+    block_rule = gx.BlockRule(m_order_chosen=True, unknown_m=gx.MCode("user", loses_position=True))
     feed_rule = gx.FeedRule(change_clears=True)
     arc_rule = gx.ArcRule(turns="P")
     tip_rule = gx.TipRule(
