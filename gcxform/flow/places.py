@@ -25,7 +25,7 @@ from gcxform.syntax.tree import Block, Word
 
 FIRST = 5420
 FEEDS = {"_inverse_time": "G93", "_units_per_minute": "G94", "_units_per_rev": "G95"}
-RADIUS, ANGLE = "@", "^"
+RADIUS, ANGLE, REPEATS = "@", "^", "L"
 ZERO = 1e-6
 """A radius, in the unit of the program, at which rounding alone may say what the angle is."""
 AXES_OF_PLANE = frozenset("XY")
@@ -152,6 +152,10 @@ class Places:
             raise self.program.refusal("GX203", "polar words are of G17 alone", place=place)
         named = groups.get("distance")
         incremental = named == "G91" if named else bool(state.groups["distance"])
+        if incremental and self.program.number(block, REPEATS, 1.0) != 1:
+            message = "polar words in G91 count anew for each hole of L, which is not followed"
+            hint = "give each hole a block of its own"
+            raise self.program.refusal("GX210", message, hint, place=place)
         if state.frames.diameter or "units" in groups or "frame" in groups:
             message = "polar words are resolved in G8, in the unit and frame before"
             raise self.program.refusal("GX210", message, place=place)

@@ -427,6 +427,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/polar-incremental]",
     ),
     _flow(
+        "polar words in G91 are the same for every hole",
+        "gcxform/flow/places.py",
+        "if incremental and self.program.number(block, REPEATS, 1.0) != 1:",
+        "if False:",
+        "tests/test_corpus.py::test_case[flow/polar-repeated]",
+    ),
+    _flow(
         "polar words in G91 lead to a point",
         "gcxform/flow/places.py",
         "radius * math.sin(turned) - y",

@@ -49,7 +49,7 @@
 | T, M61 | a tool that is not in the table, where one is given, is refused |
 | `$` | beside S or what turns a spindle; only the first spindle is known |
 | M100 to M199 | run a program of the machine: refused, but for `user-codes` and `inert-m` |
-| @ and ^ | polar words: become X and Y; in G91, G7, G18 or G19 refused |
+| @ and ^ | polar words: become X and Y; in G7, G18, G19, and in G91 with L, refused |
 | comments | `(MSG,` `(PRINT,` `(LOG,` `(PROBEOPEN` `(ABORT,` and their like are executed |
 | O-words, M98 M99 | executed; what the interpreter gets wrong is refused |
 | what they call | is found as the interpreter does, in files of small letters and .ngc too |
