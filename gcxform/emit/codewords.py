@@ -17,7 +17,7 @@ from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
-from gcxform.emit.own_blocks import apart, m_codes_of
+from gcxform.emit.own_blocks import apart, m_codes_of, over_hole
 from gcxform.modal.meaning.asides import OWN_BLOCK, codes_in
 from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
@@ -157,6 +157,8 @@ class CodeWords:
                 word in w for w in apart(self.manner, self.shape)
             ):
                 return  # it has a block of its own
+        if self.key.expanded and word in over_hole(self.source, self.shape):
+            return  # it has one between the moves
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.key.as_it_stands
         if whole or self.key.role is (Role.LAST if after else Role.FIRST):

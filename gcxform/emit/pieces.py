@@ -15,7 +15,7 @@ from gcxform.dialect.cycle_rule import TAPPING
 from gcxform.emit.corners import standing_corners
 from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
-from gcxform.emit.own_blocks import own_blocks
+from gcxform.emit.own_blocks import over_holes, own_blocks
 from gcxform.emit.tapping import Taps
 from gcxform.modal.meaning.tables import NURBS, NURBS_END
 from gcxform.modal.state import CYCLE_OFF
@@ -90,9 +90,10 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     special = _special(task, taps) | _stored(task, cycle & (count == 0)) | corner
     expanded = cycle & ~special & ~taps.lines & ~_stores_taps(task, count) & _in_moves(task)
     opens, closes = around(expanded)
+    over = over_holes(task, expanded)
+    before, behind = own_blocks(task, count, expanded)
     expanded |= _of_nurbs(task)
-    before, behind = own_blocks(task, count)
-    between = [*opens, *before, *_between_moves(task, expanded), *closes, *behind]
+    between = [*opens, *before, *over, *_between_moves(task, expanded), *closes, *behind]
     moves = [given for given in path.given if given.moves]
     events = {_said(each): each for each in reversed([*between, *moves])}
     number = {said: n for n, said in enumerate(events)}
@@ -101,7 +102,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     for given in moves:
         event[has_row & (row == given.row)] = number[_said(given)]
     first, ends = _first_of(line), _first_of(line[::-1])[::-1]
-    opening = first & _is_one_of(event, [*opens, *before], number)
+    opening = first & _is_one_of(event, [*opens, *before, *over], number)
     closing = ends & _is_one_of(event, [*closes, *behind], number)
     leads = (first & ~opening) | np.roll(opening, 1)
     last = (ends & ~closing) | np.roll(closing, -1)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from gcxform.modal.lines import Lines
-from gcxform.system.arrays import Ints
+from gcxform.system.arrays import Flags, Ints
 from gcxform.system.records import Records
 from gcxform.toolpath.path import Event
 
@@ -16,12 +16,13 @@ SWITCHED = "/"
 
 
 def events_of(
-    lines: Lines, rows: Ints, within: Sequence[tuple[int, int, Event]] = ()
+    lines: Lines, rows: Ints, calls: Flags, within: Sequence[tuple[int, int, Event]] = ()
 ) -> tuple[Event, ...]:
     """Return what happens between the moves, in the order of execution.
 
-    `rows` (n,) are the lines of the moves. `within` is what happens within canned cycles: the
-    first line of a stretch, how many moves behind its first, and what. A piece of a line that only
+    `rows` (n,) are the lines of the moves, `calls` (lines,) tells which call a cycle. `within` is
+    what happens within cycles: the first line of a stretch, how many moves behind its first, and
+    what. A piece of a line that only
     the machine can compute is an event as well: its text, which has to stay. One in a block with a
     slash has that in its name where nobody said whether such blocks are executed.
     """
@@ -32,12 +33,16 @@ def events_of(
     columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
     meanings, first_line = lines.table.meanings, lines.window.first_line
     slash = lines.reading.blocks_with_a_slash(lines.dialect)
+    rule = lines.dialect.cycle_rule
+    over_hole = rule.over_hole(lines.dialect.m_codes) if rule and calls.any() else frozenset()
     for line, number, first, first_row, last_row in zip(*columns, strict=True):
         for shape in meanings[number].events:
             if shape.aside and slash == "skip":
                 continue
             values = tuple(_value(lines, shape.what, a, first + n) for a, n in shape.slots)
             where = last_row if shape.after else first_row
+            if shape.what in over_hole and calls[line]:
+                where = min(first_row + 1, last_row)
             switched = not slash and (meanings[number].deleted or shape.aside)
             what = SWITCHED + shape.what if switched else shape.what
             events.append(Event(where, what, values, line + first_line))

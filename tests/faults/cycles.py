@@ -328,4 +328,25 @@ MUTATIONS = (
         "~there",
         "tests/test_corpus.py::test_case[dialects/haas/r-above-the-level-expanded]",
     ),
+    Mutation(
+        "cycles: M codes of a Fanuc act behind the hole",
+        "plugins/gcxform_plugins/dialects/fanuc.py",
+        'repeats="K", m_over_hole=True',
+        'repeats="K"',
+        "tests/test_corpus.py::test_case[dialects/fanuc/m-over-the-hole]",
+    ),
+    Mutation(
+        "cycles: M codes of a Haas act over the hole",
+        "plugins/gcxform_plugins/dialects/haas.py",
+        "m_over_hole=False",
+        "m_over_hole=True",
+        "tests/test_corpus.py::test_case[dialects/haas/m-behind-the-hole-for-fanuc]",
+    ),
+    Mutation(
+        "cycles: the end of a program comes over the last hole",
+        "gcxform/dialect/cycle_rule.py",
+        "if code.after and not code.ends}",
+        "if code.after}",
+        "tests/test_corpus.py::test_case[dialects/fanuc/m-over-the-hole]",
+    ),
 )

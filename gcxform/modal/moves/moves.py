@@ -352,7 +352,7 @@ class Moves:
                 self.lines.apart,
                 self.track.named(self.lines.flag("own_moves")),
             ),
-            events_of(self.lines, line, self.drilling.events),
+            events_of(self.lines, line, self.drilling.calls, self.drilling.events),
             first=self.state.frames.first,
             after_rapid=self.state.rapid,
         )

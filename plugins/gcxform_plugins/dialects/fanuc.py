@@ -19,6 +19,7 @@
 | another unit or feed mode | the feed is not known until it is programmed |
 | M0 M1 M2 M30 M98 M99 | act after the motion of their block |
 | M5, M9 with a motion | the machine's PLC decides, commonly after it: taken as after |
+| M0 M1 M5 M9 beside a cycle | act over the first hole (15i-MA manual, "Miscellaneous function") |
 | an M code not listed | may run a macro: positions and variables are unknown after it |
 | words beside it, and beside M6 | may be those of a macro (6080 to 6089): never changed |
 | M codes listed in `[control] inert-m` | move no axis and set no variable |
@@ -122,7 +123,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K", m_over_hole=True)
 
 
 class Fanuc(gx.Dialect):

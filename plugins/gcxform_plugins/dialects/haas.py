@@ -17,7 +17,7 @@ that what hangs on it is an option or refused. What is not named here is as in `
 | `Z5. /M8` | the switch decides on what is behind the slash: coolant, else refused | course |
 | two codes of a group | as Fanuc: the last is taken | known |
 | start and end radius | 0.001 inch is said of alarm 303: taken as 0.01 mm | known |
-| M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block | known |
+| M5 M9 M89, M0 M1 M2 M30 | act after the motion of their block, a cycle too | known |
 | G154, G110 to G129 | more work offsets: as Fanuc's G54.1 | manual |
 | G10 L20 | sets G154 P1, P2 ... | manual |
 | G10 L10 to L13 | as Fanuc's: lengths and radii of tools are not known from there on | manual |
@@ -184,4 +184,5 @@ class Haas(Fanuc):
         repeats="L",
         alone="cycle-without-place",
         patterns=frozenset(PATTERNS),
+        m_over_hole=False,
     )
