@@ -11,6 +11,20 @@ RUN = "gcxform/modal/moves/passages.py"
 
 MUTATIONS = (
     Mutation(
+        "offsets: a program starts in the first one, whichever it states before it moves",
+        "gcxform/modal/frames/work_offsets.py",
+        "    if unmoved:\n",
+        "    if unmoved and name not in asked.reading.work_offsets:\n",
+        "tests/test_corpus.py::test_case[offsets/starts-in-the-one-stated]",
+    ),
+    Mutation(
+        "offsets: the frame before the first move counts",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "works[0] = path.first",
+        "pass",
+        "tests/test_corpus.py::test_case[offsets/starts-in-the-one-stated]",
+    ),
+    Mutation(
         "offsets: a length by its value stays where the target has no code for it",
         "plugins/gcxform_plugins/passes/offsets.py",
         "spent and frame.valued",

@@ -72,7 +72,7 @@ def work(state: FrameState, asked: Asked) -> FrameState:
     if state.known:
         return state.in_work(name)
     unmoved = bool(np.isnan(asked.position).all())
-    if unmoved and name not in asked.reading.work_offsets:
+    if unmoved:
         return state.starting_in(name, asked.reading.work_offsets, True)
     return state.in_work(name)
 

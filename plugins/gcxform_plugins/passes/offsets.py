@@ -88,13 +88,17 @@ class Offsets(gx.Pass):
     def _check_turned(self, path: gx.Toolpath) -> None:
         """Refuse first moves in other coordinates that leave out an axis which is then unknown.
 
-        An axis that no turn mixes with others stands where it stood.
+        An axis that no turn mixes with others stands where it stood. A frame in which nothing moves
+        is left before the program has moved at all, or behind another that it has stated.
         """
-        turns = [(frame.matrix, frame.polar, frame.work) for frame in path.frames]
+        works = [frame.work for frame in path.frames]
+        if not (path.frame == 0).any():
+            works[0] = path.first
+        turns = [(f.matrix, f.polar, name) for f, name in zip(path.frames, works, strict=True)]
         before = np.append(0, path.frame[:-1])[: len(path)]
         changes = np.array([[a != b for b in turns] for a in turns], np.bool_)[before, path.frame]
         mixed = np.array([_mixed(frame) for frame in path.frames])
-        work = np.unique([frame.work for frame in path.frames], return_inverse=True)[1]
+        work = np.unique(works, return_inverse=True)[1]
         counts = mixed[before] | mixed[path.frame] | (work[before] != work[path.frame])[:, None]
         unknown = (np.isnan(path.end) & np.isnan(path.start))[:, :3] & counts
         lost = np.stack([path.lost >> k & 1 for k in range(3)], axis=1) == 1
