@@ -45,6 +45,7 @@
 | expressions | a sign binds to its number, `**` goes from the left, numbers within 1e-4 are EQ |
 | a parameter that nothing has set | refused unless given: the control may have a value left |
 | #5001 and above, `#<_x>` and its like | belong to the control: refused, but for #5420 to #5428 |
+| #5599 | switches (DEBUG,) on and off: may be set |
 | M words in a block | four at most |
 | T, M61 | a tool that is not in the table, where one is given, is refused |
 | `$` | beside S or what turns a spindle; only the first spindle is known |
