@@ -30,7 +30,8 @@ from gcxform.proof.zeros import zeros_differ
 from gcxform.toolpath.path import Event, Form, Kind, Toolpath
 from gcxform.values import dataclass
 
-SWITCHED = frozenset({"S", "M3", "M4", "M5", "M7", "M8", "M9"})
+SPINDLE, COOLANT = frozenset({"S", "M3", "M4", "M5"}), frozenset({"M7", "M8", "M9"})
+SWITCHED = SPINDLE | COOLANT
 """What spindle and coolant are told."""
 
 
@@ -49,9 +50,9 @@ def _beside(one: Event, other: Event) -> bool:
     return (one.line, one.row) == (other.line, other.row) and other.what.startswith("G")
 
 
-def _switches_beside(one: Event, other: Event) -> bool:
-    """Whether an event of spindle or coolant is of the block of another, before the same row."""
-    return one.what in SWITCHED and (one.line, one.row) == (other.line, other.row)
+def _beside_switch(event: Event, one: Event, switches: frozenset[str]) -> bool:
+    """Whether one event is of these, and of the block of another, before the same row."""
+    return one.what in switches and (one.line, one.row) == (event.line, event.row)
 
 
 @dataclass(frozen=True)
@@ -193,12 +194,14 @@ class EventProof:
     def _frames_first(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
         """Return events in which codes of coordinates stand before spindle and coolant beside them.
 
-        Controls differ in what they do first. With no move between, neither counts for the other.
+        And coolant before the spindle. Controls differ in what they do first. With no move between,
+        none of them counts for another.
         """
         found: list[Event] = []
         for event in events:
-            at = len(found)
-            while at and self._sets_frame(event) and _switches_beside(found[at - 1], event):
+            at, behind = len(found), SWITCHED if self._sets_frame(event) else frozenset[str]()
+            behind = SPINDLE if event.what in COOLANT else behind
+            while at and _beside_switch(event, found[at - 1], behind):
                 at -= 1
             found.insert(at, event)
         return tuple(found)
