@@ -150,6 +150,7 @@ def test_a_machine_needs_only_its_format(folder: Path) -> None:
         ('["A", "C"]', '["A", "X"]', "GX435", 3, 15, "names 'X'", "known: A, C"),
         ("head = []", 'head = ["C"]', "GX435", 4, 9, "the axis C stands twice", ""),
         ("offset.G54]", "offset.G53]", "GX436", 22, 1, "'G53' is not a work offset", "G54 to G59"),
+        ("offset.G54]", "offset.G505]\n[work-offset.G58]", "GX436", 22, 1, "are one work", ""),
         ("[work-offset.G54]", "[home.G82]", "GX436", 22, 1, "'G82' is not a home", "G28, G30"),
         ('"G59.1"', "G59.1", "GX403", 27, 1, "key '1' in work-offset.G59", "known: X"),
         ("[tool.12]", "[tool]\n2 = 5", "GX405", 33, 1, "expected a table", ""),

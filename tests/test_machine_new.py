@@ -339,6 +339,18 @@ def test_a_work_offset_that_is_in_force_by_itself_is_used(here: Path) -> None:
     assert "[work-offset.G54]" not in asked_of(here, "fanuc", program.replace("G0 X0", "G55 X0"))
 
 
+def test_a_work_offset_is_called_as_its_control_does_too(here: Path) -> None:
+    (here / "part.mpf").write_text("G710 G17 G90 G94 G505\nG0 X0 Y0 Z9\nM30\n")
+    again = ("machine", "new", "-f", "siemens", "-o", "m.toml", "part.mpf")
+    assert call(*again).exit_code == 0
+    file = here / "m.toml"
+    assert "# siemens: G505, as which this table may be called too" in file.read_text()
+    file.write_text(file.read_text().replace("work-offset.G58", "work-offset.G505"))
+    before = file.read_text()
+    assert call(*again).exit_code == 0
+    assert file.read_text() == before
+
+
 CONTOUR = HEAD + "G0 X-10. Y0 Z9.\nG41 D1 G1 X0 F99.\nY20.\nX20.\nG40 Y30.\nM30\n%\n"
 
 

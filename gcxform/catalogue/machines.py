@@ -183,7 +183,8 @@ CODES: dict[str, tuple[str, str]] = {
     "GX436": (
         "Unknown work offset or home position",
         "Work offsets are called by their codes, G54 to G59, and further ones such as "
-        '"G59.1" or "G54.1 P1". A name with a point stands in quotes: [work-offset."G59.1"]. Home '
+        '"G59.1" or "G54.1 P1", of a SINUMERIK also G505 to G599. A name with a point stands in '
+        'quotes: [work-offset."G59.1"]. Home '
         "positions are those of G28 and G30.",
     ),
     "GX437": (

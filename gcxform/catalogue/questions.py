@@ -44,6 +44,9 @@ MEANINGS: Final[Mapping[Question, str]] = {
     ("work-offset",): "the zero of the work offset in the machine, as the page of offsets has it",
     ("home",): "the reference point in the machine, mm or degrees",
 }
+COUNTS: Final = "siemens"
+"""The dialect whose work offsets beyond the fourth are G505 to G599."""
+FURTHER: Final = "G54.1 P"
 SHOWN: Final[Mapping[Question, Mapping[str, str]]] = {
     ("input", "increment"): {
         "fanuc": 'parameter 3401 bit 0 (DPI): 1 is "calculator", 0 an increment system',
@@ -94,4 +97,14 @@ def meaning_of(question: Question) -> str:
 
 def shown_by(question: Question, dialect: str) -> str:
     """Return where a control shows a setting, empty where that is not known."""
+    if question[0] == "work-offset" and dialect == COUNTS:
+        return _counted(question[1])
     return SHOWN.get(kind_of(question), {}).get(dialect, "")
+
+
+def _counted(name: str) -> str:
+    """Return what a control that counts its work offsets calls one beyond the fourth."""
+    place = {"G58": "05", "G59": "06"}.get(name, "")
+    if name.startswith(FURTHER):
+        place = f"{int(name.removeprefix(FURTHER)) + 6:02}"
+    return f"G5{place}, as which this table may be called too" if place else ""

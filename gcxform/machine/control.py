@@ -32,9 +32,19 @@ COMP_CORNERS: Final = "cutter-comp-corners"
 COMP_ENTRY: Final = "cutter-comp-entry"
 """The settings that say how the control resolves a contour under cutter compensation."""
 HOME: Final = re.compile(r"G28|G30( P[0-9]+)?|M140|M92")
-WORK_OFFSET: Final = re.compile(r"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+|G15 H[0-9]+")
+FURTHER: Final = r"G5(0[5-9]|[1-9][0-9])"
+WORK_OFFSET: Final = re.compile(rf"G5[4-9](\.[1-9])?( P[0-9]+)?|G154 P[0-9]+|G15 H[0-9]+|{FURTHER}")
 """The names of homes and of work offsets that a machine file takes."""
+PER_TABLE: Final = 6  # work offsets that have codes of two digits
 _OWN_CODE = re.compile("M[1-9][0-9]{2,3}")
+
+
+def offset_in_blocks(name: str) -> str:
+    """Return what blocks call a work offset that a control counts with three digits, as G505."""
+    if not re.fullmatch(FURTHER, name):
+        return name
+    place = int(name[2:])
+    return f"G{53 + place}" if place <= PER_TABLE else f"G54.1 P{place - PER_TABLE}"
 
 
 @dataclass(frozen=True)

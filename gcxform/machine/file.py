@@ -75,7 +75,10 @@ def load_machine(path: Path, known: Known = NONE) -> Machine:
         gauge_point=file.gauge_point,
         errors=_named(document, "errors", file.errors),
         axes={letter: _normalised(axis) for letter, axis in file.axis.items()},
-        work_offsets={code: _given(offset) for code, offset in file.work_offset.items()},
+        work_offsets={
+            control.offset_in_blocks(code): _given(offset)
+            for code, offset in file.work_offset.items()
+        },
         homes={code: _given(place) for code, place in file.home.items()},
         tools=_tools(document, file, known),
         control=control.settings_of(file.control) | control.codes_of(programs.codes),
@@ -273,6 +276,10 @@ def _chain_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnosti
 
 def _offset_findings(document: TomlText, file: MachineFile) -> Iterator[Diagnostic]:
     for code, offset in file.work_offset.items():
+        other = control.offset_in_blocks(code)
+        if other != code and other in file.work_offset:
+            where = document.where("work-offset", code)
+            yield Diagnostic("GX436", f"{code} and {other} are one work offset", where)
         if not WORK_OFFSET.fullmatch(code):
             yield Diagnostic(
                 "GX436",

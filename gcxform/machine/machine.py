@@ -110,7 +110,9 @@ class MachineFile(msgspec.Struct, frozen=True, forbid_unknown_fields=True, renam
     axis: Annotated[dict[str, Axis], says("an axis by its letter")] = {}
     work_offset: Annotated[
         dict[str, Offset],
-        says('where the zero of a work offset is in the machine, by its code: G54, "G54.1 P1"'),
+        says(
+            'where the zero of a work offset is in the machine, by its code: G54, "G54.1 P1", G505'
+        ),
     ] = {}
     home: Annotated[
         dict[str, Offset],

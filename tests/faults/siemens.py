@@ -48,6 +48,27 @@ STANDING = "plugins/gcxform_plugins/dialects/siemens/axes_of_lines.py"
 
 MUTATIONS = (
     Mutation(
+        "siemens: G507 is the sixth work offset",
+        "plugins/gcxform_plugins/dialects/siemens/offsets.py",
+        '{f"{506 + n}"',
+        '{f"{507 + n}"',
+        f"{CASES}[dialects/siemens/work-offsets]",
+    ),
+    Mutation(
+        "siemens: the number of G54.1 is said as turns",
+        LINES,
+        'return [each for each in said if each[0] != "P"]',
+        "return said",
+        f"{CASES}[dialects/siemens/work-offsets-from-fanuc]",
+    ),
+    Mutation(
+        "machine file: G505 is G59",
+        "gcxform/machine/control.py",
+        'return f"G{53 + place}"',
+        'return f"G{54 + place}"',
+        f"{CASES}[dialects/siemens/work-offsets-told]",
+    ),
+    Mutation(
         "siemens: G451 is passed over where a contour begins",
         BLOCKS,
         "self.corners and (begins or said)",

@@ -17,6 +17,7 @@ from gcxform.cli.program.settings_block import Notes, block, header, sections
 from gcxform.config.to_fill_in import TO_FILL_IN
 from gcxform.config.toml_text import locate_key
 from gcxform.diagnostics import Location, UsageError
+from gcxform.machine.control import offset_in_blocks
 
 BYTE_ORDER_MARK = "\ufeff"
 _NOTE = re.compile(r"# (needed|used)(:| by) ")
@@ -30,7 +31,7 @@ def with_questions(
     Those that it answers are left as they are.
     """
     plain = text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
-    before: dict[str, Any] = tomllib.loads(plain)
+    before = _loaded(plain)
     lines = plain.rstrip("\n").split("\n")
     for name, group in sections(questions).items():
         new = [question for question in group if not _there(before, question)]
@@ -50,7 +51,10 @@ def with_questions(
 
 def _loaded(text: str) -> dict[str, Any]:
     with suppress(tomllib.TOMLDecodeError):
-        return tomllib.loads(text)
+        found = tomllib.loads(text)
+        if isinstance(offsets := found.get("work-offset"), dict):
+            found["work-offset"] = {offset_in_blocks(name): one for name, one in offsets.items()}
+        return found
     return {}
 
 

@@ -18,7 +18,13 @@ import msgspec
 from gcxform.catalogue.questions import OF_THE_STATE, PIPELINE, Question, kind_of, questions
 from gcxform.cli.program.machine_needs import ANY, INERT, LENGTH_ALONE, Used, used_by
 from gcxform.diagnostics import Diagnostic, Severity
-from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY, inert_of, settings_of
+from gcxform.machine.control import (
+    COMP_CORNERS,
+    COMP_ENTRY,
+    inert_of,
+    offset_in_blocks,
+    settings_of,
+)
 from gcxform.machine.machine import Machine, Tool
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.syntax.source import Source
@@ -312,6 +318,7 @@ def _machine(machine: Machine, given: Mapping[Question, Any]) -> Machine:
             known = tools.get(int(name), Tool())
             tools[int(name)] = msgspec.structs.replace(known, **{key[0]: value})
         elif table in places:
+            name = offset_in_blocks(name)
             places[table][name] = {**places[table].get(name, {}), key[0]: value}
     changed: Machine = msgspec.structs.replace(
         machine,

@@ -34,7 +34,7 @@ kept as it stands, with all that is lost behind it.
 | F in the line behind a corner | whose feed it has is a setting: refused, but for FRC= | [K] |
 | start and end radius | may differ by 0.01 mm (MD21000) | [K] |
 | `G4 F` | seconds, in a block of its own; `G4 S`: refused | [K] |
-| G54 to G57, G505, G506 | work offsets; G505 and G506 are G58 and G59 in the machine file | [K] |
+| G54 to G57, G505 to G599 | work offsets, by number those of other controls: G505 is G58 | [K] |
 | G500 | leaves basic frames in force, which only the control knows: moves are refused | K2 741 |
 | G53 | so does this: refused, but for `[control] basic-frames = "none"`, where it is SUPA | K2 |
 | SUPA, G153 | in machine coordinates; Z only with D0: a tool length may stay | ISO 3-42 |
@@ -179,6 +179,7 @@ class Siemens(gx.Dialect):
         "G33.1": gx.Code("motion"),
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
+        "G54.1": v.frame("frame", "work", "P"),
         "G9": v.at_end("non-modal"),
         "G60": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),

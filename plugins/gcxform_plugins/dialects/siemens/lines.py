@@ -13,8 +13,8 @@ from decimal import Decimal
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.asides import AROUND
 from gcxform_plugins.dialects.siemens.gathering import gathered
+from gcxform_plugins.dialects.siemens.offsets import FURTHER, WORK
 from gcxform_plugins.dialects.siemens.place import text_of
-from gcxform_plugins.dialects.siemens.reading import WORK
 from gcxform_plugins.dialects.siemens.tapping import CODE, Tap, lines_of, turned
 
 OFFSETS = {name: f"G{number}" for number, name in WORK.items()}
@@ -29,6 +29,7 @@ CODES = {
 """Codes by another name, or by none: where nothing else is read, nothing has to be said."""
 SAME = frozenset(
     (
+        *(f"G{number}" for number in FURTHER),
         *("G0", "G1", "G2", "G3", "G17", "G18", "G19", "G90", "G91", "G93", "G94", "G95", "G9"),
         *("G40", "G41", "G42", "G60", "G64", *AROUND),
     )
@@ -40,7 +41,9 @@ STEPPED = (
     "steps of Z behind another tool length: a setting decides whether they make up for it (SD42442)"
 )
 CUTS = MOTIONS - {"G0", TAP}
-MOVES_ZERO = frozenset(("G20", "G21", "G43", "G49", "G53", "M6", "G68", "G69", *OFFSETS))
+MOVES_ZERO = frozenset(
+    ("G20", "G21", "G43", "G49", "G53", "M6", "G68", "G69", *OFFSETS, *OFFSETS.values())
+)
 AXES = frozenset("XYZABC")
 BLENDS = re.compile(r"G64[1-5]")
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
@@ -97,6 +100,7 @@ class Lines(gx.Speller):
     def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
         if not words:
             return
+        words = _of_list(words)
         names = [letter + text_of(Decimal(text)) for letter, text in words]
         values = dict(words)
         self._check_m(names)
@@ -235,3 +239,14 @@ class Lines(gx.Speller):
         said = " ".join(self._words(rest, dict(rest)))
         yield f"{number}SUPA {said} D0"
         self.waits = bool(self.length)
+
+
+def _of_list(words: list[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return words with the code of a work offset beyond the sixth. Raises UnspeakableError."""
+    if ("G", "54.1") not in words:
+        return words
+    name = f"G54.1 P{dict(words).get('P', '')}"
+    if name not in OFFSETS:
+        raise gx.UnspeakableError(f"{name} has no words on a SINUMERIK")
+    said = [("G", OFFSETS[name][1:]) if each == ("G", "54.1") else each for each in words]
+    return [each for each in said if each[0] != "P"]

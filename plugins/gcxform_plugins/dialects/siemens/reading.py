@@ -18,6 +18,7 @@ from gcxform_plugins.dialects.siemens.asides import (
 )
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, CORNERS, FRAMES, STEP, Line
+from gcxform_plugins.dialects.siemens.offsets import WORK
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, Place
 
 MODAL = {
@@ -25,7 +26,6 @@ MODAL = {
     **dict.fromkeys(("93", "94", "95"), "feed"),
     **dict.fromkeys(("40", "41", "42"), "comp"),
 }
-WORK = {"54": "G54", "55": "G55", "56": "G56", "57": "G57", "505": "G58", "506": "G59"}
 PLANES = {"17": "XY", "18": "ZX", "19": "YZ"}
 NO_OFFSET = "G500"
 REASONS = {

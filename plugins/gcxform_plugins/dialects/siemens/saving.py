@@ -20,7 +20,8 @@ ALIKE = ("plane", "work", "unit", "comp", "feed_mode", "following", "orientation
 put_back, alike = attrgetter(*PUT_BACK), attrgetter(*ALIKE)
 FOLLOWED = frozenset((
     "0", "1", "2", "3", "4", "9", "17", "18", "19", "40", "41", "42", "53", "54", "55", "56", "57",
-    "71", "90", "91", "93", "94", "95", "110", "111", "112", "153", "505", "506", "700", "710",
+    "71", "90", "91", "93", "94", "95", "110", "111", "112", "153", "700", "710",
+    *(f"{number}" for number in range(505, 600)),
 ))  # fmt: skip
 """G codes of which it is known here what is in force behind them."""
 CODE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*([0-9]+)(?![0-9.])", re.IGNORECASE)
