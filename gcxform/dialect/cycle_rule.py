@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from enum import IntEnum
 
-from gcxform.dialect.codes import MCode
 from gcxform.values import dataclass
 
 DWELL = "DWELL"
@@ -121,8 +120,6 @@ class CycleRule:
     initial_level   whether a program starts in G98
     patterns        kept codes that drill the cycle in force at places of their own, as G70 of Haas:
                     no others may stand where a cycle is in force
-    m_over_hole     M codes that act behind the motion of their block act in that of a cycle when
-                    the tool has come over the first hole; otherwise behind the last one
     """
 
     cycles: Mapping[int, Cycle]
@@ -137,12 +134,6 @@ class CycleRule:
     repeats: str = "L"
     initial_level: bool = True
     patterns: frozenset[str] = frozenset()
-    m_over_hole: bool = False
-
-    def over_hole(self, m_codes: Mapping[int, MCode]) -> frozenset[str]:
-        """Return which M codes act over the hole that their block drills."""
-        late = {n: code for n, code in m_codes.items() if code.after and not code.ends}
-        return frozenset(f"M{n}" for n in late if self.m_over_hole and not late[n].barrier)
 
     def place_is_open(self, control: Mapping[str, str | float]) -> bool:
         """Tell whether a setting that is not given decides if a block without a place drills."""

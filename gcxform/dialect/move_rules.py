@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from gcxform.dialect.codes import MCode
 from gcxform.values import dataclass
 
 
@@ -79,6 +82,8 @@ class MotionRule:
                       as its number says, R an arc of that radius
     cycles_stop       the moves of a cycle end exactly, also where G64 rounds corners: G61 is in
                       force in its block, and behind it G64 as it was stated
+    m_over_hole       M codes that act behind the motion of their block act in that of a cycle when
+                      the tool has come over the first hole; otherwise behind the last one
     extruder          which codes say whether E is a distance: "own", M82 and M83 alone; "last", the
                       last of them and of G90 and G91; "either", M83 or G91; "" where firmware
                       differs, and what they disagree on is refused
@@ -92,4 +97,10 @@ class MotionRule:
     rounds_corners: bool = False
     corners: str = ""
     cycles_stop: bool = False
+    m_over_hole: bool = False
     extruder: str = ""
+
+    def over_hole(self, m_codes: Mapping[int, MCode]) -> frozenset[str]:
+        """Return which M codes act over the hole that their block drills."""
+        late = {n: code for n, code in m_codes.items() if code.after and not code.ends}
+        return frozenset(f"M{n}" for n in late if self.m_over_hole and not late[n].barrier)

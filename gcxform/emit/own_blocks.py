@@ -93,8 +93,7 @@ def over_holes(task: Task, expanded: Flags) -> list[Given]:
 
 def _over_hole_codes(dialect: type[Dialect]) -> frozenset[str]:
     """Return the M codes that act over the hole that their block drills."""
-    rule = dialect.cycle_rule
-    return rule.over_hole(dialect.m_codes) if rule else frozenset()
+    return dialect.motion_rule.over_hole(dialect.m_codes)
 
 
 def _as_written(task: Task, line: int, event: Event) -> str:

@@ -33,8 +33,8 @@ def events_of(
     columns = [c.tolist() for c in (having, lines.shape[having], lines.first[having], begin, end)]
     meanings, first_line = lines.table.meanings, lines.window.first_line
     slash = lines.reading.blocks_with_a_slash(lines.dialect)
-    rule = lines.dialect.cycle_rule
-    over_hole = rule.over_hole(lines.dialect.m_codes) if rule and calls.any() else frozenset()
+    rule = lines.dialect.motion_rule
+    over_hole = rule.over_hole(lines.dialect.m_codes) if calls.any() else frozenset()
     for line, number, first, first_row, last_row in zip(*columns, strict=True):
         for shape in meanings[number].events:
             if shape.aside and slash == "skip":

@@ -331,8 +331,8 @@ MUTATIONS = (
     Mutation(
         "cycles: M codes of a Fanuc act behind the hole",
         "plugins/gcxform_plugins/dialects/fanuc.py",
-        'repeats="K", m_over_hole=True',
-        'repeats="K"',
+        'corners="CR", m_over_hole=True',
+        'corners="CR"',
         "tests/test_corpus.py::test_case[dialects/fanuc/m-over-the-hole]",
     ),
     Mutation(
@@ -344,7 +344,7 @@ MUTATIONS = (
     ),
     Mutation(
         "cycles: the end of a program comes over the last hole",
-        "gcxform/dialect/cycle_rule.py",
+        "gcxform/dialect/move_rules.py",
         "if code.after and not code.ends}",
         "if code.after}",
         "tests/test_corpus.py::test_case[dialects/fanuc/m-over-the-hole]",

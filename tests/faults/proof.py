@@ -78,8 +78,8 @@ MUTATIONS = (
     Mutation(
         "proof: in what order a block tells spindle and coordinates counts",
         "gcxform/proof/events.py",
-        "            while at and self._sets_frame(event) and",
-        "            while False and self._sets_frame(event) and",
+        "SWITCHED if self._sets_frame(event) else frozenset[str]()",
+        "frozenset[str]()",
         "tests/test_corpus.py::test_case[dialects/across/frame-beside-switch]",
     ),
     Mutation(

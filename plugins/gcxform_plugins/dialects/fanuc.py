@@ -123,7 +123,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K", m_over_hole=True)
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):
@@ -223,7 +223,7 @@ class Fanuc(gx.Dialect):
     )
     point_rule = gx.PointRule(required=True, dwell={"X": 1.0, "U": 1.0, "P": 0.001})
     feed_rule = gx.FeedRule(change_clears=True)
-    motion_rule = gx.MotionRule(g53_is_rapid=True, corners="CR")
+    motion_rule = gx.MotionRule(g53_is_rapid=True, corners="CR", m_over_hole=True)
     arc_rule = gx.ArcRule(absolute=0.01)
     cutter_comp = gx.CutterComp(stored=True)
     offset_rule = gx.OffsetRule(g10_l20="G54.1", g10_tools=TOOL_TABLE, g10_p0="all")

@@ -161,7 +161,11 @@ class Haas(Fanuc):
         dwell_in_seconds=True,
     )
     motion_rule = replace(
-        Fanuc.motion_rule, g28_without_axes=True, g28_ends_length=True, g53_is_rapid=False
+        Fanuc.motion_rule,
+        g28_without_axes=True,
+        g28_ends_length=True,
+        g53_is_rapid=False,
+        m_over_hole=False,
     )
     offset_rule = replace(
         Fanuc.offset_rule,
@@ -184,5 +188,4 @@ class Haas(Fanuc):
         repeats="L",
         alone="cycle-without-place",
         patterns=frozenset(PATTERNS),
-        m_over_hole=False,
     )
