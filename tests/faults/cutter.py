@@ -7,13 +7,15 @@ from faults.mutation import CORPUS, CUTTER, Mutation
 PLANTED = "tests/test_planted_comp.py"
 
 
-def _offsetting(name: str, old: str, new: str) -> Mutation:
+def _offsetting(
+    name: str, old: str, new: str, file: str = "offsetting", test: str = CUTTER
+) -> Mutation:
     return Mutation(
         f"offsetting: {name}",
-        "plugins/gcxform_plugins/passes/cutter_comp/offsetting.py",
+        f"plugins/gcxform_plugins/passes/cutter_comp/{file}.py",
         old,
         new,
-        CUTTER,
+        test,
     )
 
 
@@ -144,14 +146,35 @@ MUTATIONS = (
         "incremental[:, 0]",
         "tests/test_corpus.py::test_case",
     ),
-    _offsetting("the other side", "(at[0] - side * radius", "(at[0] + side * radius"),
+    _offsetting("the other side", "at + moves.off *", "at - moves.off *"),
+    _offsetting("arcs grow inside", "- self.sense * self.off", "+ self.sense * self.off", "moves"),
+    _offsetting("the other crossing", "* turns >= 0)", "* turns <= 0)"),
     _offsetting(
-        "arcs grow inside", "self.radius - side * self.sense", "self.radius + side * self.sense"
+        "moves that go backwards are let through", "moves.first) >= -1e-9)", "moves.first) >= -9e9)"
     ),
-    _offsetting("the other crossing", "u[1] * v[0]) >= 0:", "u[1] * v[0]) <= 0:"),
-    _offsetting("moves that go backwards are let through", "if way < -1e-9:", "if False:"),
-    _offsetting("small turns are corners", "abs(turn) <= manner.straight", "abs(turn) <= 1e-9"),
-    _offsetting("the inside is the outside", "elif turn < 0 or", "elif turn > 0 or"),
+    _offsetting(
+        "small turns are corners", "np.abs(turn) <= manner.straight", "np.abs(turn) <= 1e-9"
+    ),
+    _offsetting("the inside is the outside", "((turn < 0) |", "((turn > 0) |"),
+    _offsetting(
+        "a contour is joined to the one before",
+        "joined = ~moves.begins",
+        "joined = moves.begins | True",
+        test=f"{CORPUS}[cutter-comp/planes]",
+    ),
+    _offsetting(
+        "what is refused first is told, not what comes first",
+        "min(self.found, key=lambda each: each[0])",
+        "self.found[0]",
+        test=f"{CORPUS}[cutter-comp/gx350-first]",
+    ),
+    Mutation(
+        "cutter-comp: a contour that begins along the tool goes before all others",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
+        "            row = row[row < blind[0]]",
+        "            row = row[:0]",
+        f"{CORPUS}[cutter-comp/gx350-before-along]",
+    ),
     Mutation(
         "cutter-comp: corners go the wrong way",
         "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
@@ -162,8 +185,8 @@ MUTATIONS = (
     Mutation(
         "cutter-comp: still moves stay on the contour",
         "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
-        "            self.end[inside, axis] = self.end[mover, axis]",
-        "            pass",
+        "end[still, axes] = end[mover, axes]",
+        "pass",
         CUTTER,
     ),
     Mutation(
@@ -271,12 +294,11 @@ MUTATIONS = (
         "for way in self.ways[:1]:",
         PLANTED,
     ),
-    Mutation(
-        "offsetting: LinuxCNC never looks back",
-        "plugins/gcxform_plugins/passes/cutter_comp/offsetting.py",
-        "> manner.straight\n\n\ndef _turn(",
-        "> 9.9\n\n\ndef _turn(",
-        "tests/test_corpus.py::test_case",
+    _offsetting(
+        "LinuxCNC never looks back",
+        "> manner.straight, True)",
+        "> 9.9, True)",
+        test="tests/test_corpus.py::test_case",
     ),
     _beside("begins", 'self._fail(wrong & ~self.entry, "the centre is not', 'str("'),
     _beside("ends", 'self._fail(wrong, "the centre is not', 'str("'),
@@ -285,16 +307,16 @@ MUTATIONS = (
     _beside("centres", 'self._fail(moved, "the centre of', 'str("the centre of'),
     _entry("its direction is not looked at", "proof", "(uneven | turned |", "(uneven |"),
     _entry("its start is not looked at", "proof", "(uneven | turned |", "(turned |"),
-    _entry("it keeps its centre", "offsetting", "2 * along)", "3 * along)"),
-    _entry("a small one", "offsetting", "radius <= radius:", "radius < 0:", "arc-begins-too-small"),
+    _entry("it keeps its centre", "offsetting", "(2 * along) * u", "(3 * along) * u"),
+    _entry("a small one", "offsetting", "<= moves.radius", "< 0", "arc-begins-too-small"),
     _entry(
         "an inside corner moves its end",
         "offsetting",
-        "elif one.middle is not None and not turn < 0:",
-        "elif False:",
+        "refusals.add(JOIN, blocked, message)",
+        "str(message)",
         "arc-begins-then-inside",
     ),
-    _entry("a circle", "offsetting", "edge.sweep > tau - WHOLE", "False", "arc-begins-whole"),
+    _entry("a circle", "offsetting", "moves.sweep[k] > TURN - WHOLE", "False", "arc-begins-whole"),
     _beside("missing corners", 'self._fail(missing, "', 'str("'),
     _beside("round corners", "self.row[k][round_it & wrong]", "self.row[k][:0]"),
     _beside("other axes", "on[~same.all(axis=1)]", "on[:0]"),

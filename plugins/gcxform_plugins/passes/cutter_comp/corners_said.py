@@ -9,7 +9,6 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Ints
-from gcxform_plugins.passes.cutter_comp.offsetting import Edge
 
 ENDS = "-corners"
 
@@ -53,13 +52,13 @@ def codes_of(dialect: type[gx.Dialect]) -> Mapping[str, str]:
     return {name: act.removesuffix(ENDS) for name, act in acts.items() if act.endswith(ENDS)}
 
 
-def refuse_rapid_corners(path: gx.Toolpath, inserted: Mapping[int, Edge]) -> None:
-    """Refuse rapids behind an outside corner that is an arc: how they go around is known of none.
+def refuse_rapid_corners(path: gx.Toolpath, around: Ints) -> None:
+    """Refuse rapids among the rows that an arc leads to around an outside corner.
 
+    How they are joined there is known of no control that leaves its corners to a parameter.
     Straight past it, as LinuxCNC does, the tool would cut into the corner.
     """
-    around = np.array([row for row, edge in inserted.items() if edge.corner == "arc"], np.int64)
     wrong = around[path.kind[around] == gx.Kind.RAPID]
     if len(wrong):
         message = "a rapid around an outside corner, of which it is not known how it is joined"
-        raise path.refuse("GX232", np.sort(wrong), message, "go around the corner with G1")
+        raise path.refuse("GX232", wrong, message, "go around the corner with G1")

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 import numpy as np
 
 import gcxform as gx
-from gcxform.vocabulary import Floats, Ints
+from gcxform.vocabulary import Flags, Floats, Ints
 from gcxform_plugins.passes.cutter_comp.corners_said import corners_said, refuse_rapid_corners
+from gcxform_plugins.passes.cutter_comp.moves import Moves
 from gcxform_plugins.passes.cutter_comp.offsetting import (
     CannotOffsetError,
     Corners,
-    Edge,
     Entry,
     Manner,
+    Offset,
     offset,
-    swept,
     turns_about,
 )
 from gcxform_plugins.passes.cutter_comp.proof import prove_beside
@@ -71,12 +70,10 @@ class CutterComp(gx.CompensationPass):
             return path.replace(blocks=blocks)
         refuse_unresolved(path, context)
         self._refuse_open(path, context)
-        centre = _CentrePath(path, self._manner(path, context))
-        for first, last in _sections(path):
-            centre.resolve(first, last)
+        contours = _Contours.of(path, self._manner(path, context))
         if not context.source.cutter_comp.corners:
-            refuse_rapid_corners(path, centre.inserted)
-        return centre.path().replace(blocks=blocks)
+            refuse_rapid_corners(path, contours.row[contours.made.around])
+        return contours.centre_path().replace(blocks=blocks)
 
     def prove(self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext) -> None:
         """Check that the centre is beside the contour all along, and everything else as it was."""
@@ -147,145 +144,123 @@ class ContourError(gx.InputError):
 
 
 CHOICES = {"corners": ("arc", "linear"), "entry": ("own", "next")}
+AXES = np.array([plane.axes[:2] for plane in gx.Plane]).T
 
 
-def _sections(path: gx.Toolpath) -> Iterator[tuple[int, int]]:
-    """Yield first row and row after the last of each stretch under compensation."""
-    on = np.concatenate([[False], path.side != 0, [False]])
-    edges = np.flatnonzero(on[1:] != on[:-1])
-    yield from zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)
+@dataclass(frozen=True)
+class _Contours:
+    """The rows (n,) of a path that are compensated, and what becomes of them in their planes.
 
+    axes (2, n) are those of the plane of each; still (m,) rows that stand still there.
+    """
 
-class _CentrePath:
-    """The columns of a path whose rows under compensation become those of the centre."""
+    path: gx.Toolpath
+    row: Ints
+    still: Ints
+    axes: Ints
+    moves: Moves
+    made: Offset
 
-    def __init__(self, path: gx.Toolpath, manner: Manner) -> None:
-        self.before = path
-        self.manner = manner
-        self.start = path.start
-        self.end = np.array(path.end)
-        self.centre = np.array(path.centre)
-        self.sweep = np.array(path.sweep)
-        self.sense = path.sense.astype(np.int64)
-        self.inserted: dict[int, Edge] = {}
-        self.rows, self.axes = list[int](), list[list[int]]()
-        self.finish: list[tuple[float, float]] = []
-        self.standing: list[tuple[int, int, list[int], list[int]]] = []
-        self.listed: dict[tuple[int, ...], tuple[list[Any], ...]] = {}
-
-    def resolve(self, first: int, last: int) -> None:
-        """Resolve the rows of one stretch under compensation."""
-        path = self.before
-        side, radius = int(path.side[first]), float(path.radius[first])
-        if radius == 0.0:
-            return
-        axes = list(gx.Plane(int(path.plane[first])).axes[:2])
-        rows, edges = self._edges(first, last, axes)
-        try:
-            offset(edges, side, radius, self.manner)
-        except CannotOffsetError as error:
-            where = np.array([rows[error.index]])
-            begins = error.index == 0
-            hint = "use a smaller tool, or " + (
-                "begin farther away" if begins else "change the contour"
-            )
-            refusal = path.refuse("GX350", where, error.message, hint)
-            raise ContourError(refusal.diagnostics, error.alarm) from None
-        self._place(rows, edges, axes)
-        if len(rows) < last - first:
-            self.standing.append((first, last, rows, axes))
-
-    def _edges(self, first: int, last: int, axes: list[int]) -> tuple[list[int], list[Edge]]:
-        """Return the rows that move in the plane, and what they are there."""
-        path, part = self.before, slice(first, last)
-        rows, edges = [], []
-        moves = zip(*(column[part] for column in self._in_plane(*axes)), strict=True)
-        for row, (a, b, c, sense, sweep) in enumerate(moves, first):
-            if sense:
-                edges.append(Edge((a[0], a[1]), (b[0], b[1]), (c[0], c[1]), sense, sweep))
-            elif abs(a[0] - b[0]) + abs(a[1] - b[1]) > STILL:
-                edges.append(Edge((a[0], a[1]), (b[0], b[1])))
-            else:
-                continue
-            rows.append(row)
-        if not rows or rows[0] != first:
+    @classmethod
+    def of(cls, path: gx.Toolpath, manner: Manner) -> _Contours:
+        """Compensate the contours of a path. Raises ContourError for the first that cannot be."""
+        held = (path.side != 0) & (path.radius > 0)
+        rows = np.flatnonzero(held)
+        moving = _moves_in_plane(path, rows)
+        row, still = rows[moving], rows[~moving]
+        begins = held & ~np.append(False, held[:-1])
+        blind = still[begins[still]]
+        if len(blind):
+            row = row[row < blind[0]]
+        moves = _moves(path, row, begins)
+        made = _offset(path, row, moves, manner)
+        if len(blind):
             message = "the move that begins compensation does not move in the plane"
-            raise path.refuse("GX350", np.array([first]), message, "program X or Y in that block")
-        return rows, edges
+            raise path.refuse("GX350", blind[:1], message, "program X or Y in that block")
+        return cls(path, row, still, AXES[:, path.plane[row]], moves, made)
 
-    def _in_plane(self, *axes: int) -> tuple[list[Any], ...]:
-        """Return starts, ends, centres, senses and sweeps of all moves, in a plane."""
-        if axes not in self.listed:
-            path, columns = self.before, [*axes]
-            places = (each[:, columns].tolist() for each in (self.start, path.end, path.centre))
-            self.listed[axes] = *places, self.sense.tolist(), path.sweep.tolist()
-        return self.listed[axes]
-
-    def _place(self, rows: list[int], edges: list[Edge], axes: list[int]) -> None:
-        """Take note of where moves go; their ends are written for all stretches together."""
-        self.rows += rows
-        self.axes += [axes] * len(rows)
-        self.finish += [edge.finish for edge in edges]
-        for row, edge in zip(rows, edges, strict=True):
-            if edge.centre is not None:
-                self.sweep[row] = swept(edge)
-            if edge.middle is not None:
-                self.centre[row, axes] = edge.middle
-            if edge.corner:
-                self.inserted[row] = edge
-
-    def _still(self, first: int, last: int, rows: list[int], axes: list[int]) -> None:
-        """Let rows that stand still in the plane stand where the centre is."""
-        inside = np.arange(first, last)
-        mover = np.array(rows)[np.searchsorted(rows, inside, "right") - 1]
-        for axis in axes:
-            self.end[inside, axis] = self.end[mover, axis]
-
-    def path(self) -> gx.Toolpath:
-        """Return the centre path."""
-        before = self.before
-        if self.rows:
-            self.end[np.array(self.rows)[:, None], np.array(self.axes)] = self.finish
-        for each in self.standing:
-            self._still(*each)
-        counts = np.ones(len(before), np.int64)
-        counts[list(self.inserted)] = 2
-        row = np.repeat(np.arange(len(before)), counts)
-        nth = np.arange(len(row)) - (np.cumsum(counts) - counts)[row]
+    def centre_path(self) -> gx.Toolpath:
+        """Return the path of the centre, with moves around corners."""
+        path, made = self.path, self.made
+        corner = np.flatnonzero(made.around | made.across)
+        counts = np.ones(len(path), np.int64)
+        counts[self.row[corner]] = 2
+        row = np.repeat(np.arange(len(path)), counts)
+        first = np.cumsum(counts) - counts
+        end, centre, sweep = self._ends(), np.array(path.centre), np.array(path.sweep)
+        arcs, enters = self.moves.arc, ~np.isnan(made.middle[0])
+        sweep[self.row[arcs]] = made.sweep[arcs]
+        centre[self.row[enters], self.axes[:, enters]] = made.middle[:, enters]
+        nth = path.nth[row] + (np.arange(len(row)) - first[row])
         columns: dict[str, Any] = {
-            "end": np.asfortranarray(self.end[row]),
-            "kind": before.kind[row],
-            "centre": self.centre[row],
-            "sweep": self.sweep[row],
-            "nth": before.nth[row] + nth + _inserted_before(before.source, counts)[row],
+            "end": np.asfortranarray(end[row]),
+            "kind": path.kind[row],
+            "centre": centre[row],
+            "sweep": sweep[row],
+            "nth": nth + _inserted_before(path.source, counts)[row],
             "side": np.zeros(len(row), np.int8),
             "radius": np.full(len(row), np.nan),
         }
-        corner = np.flatnonzero((counts[row] == 2) & (nth == 0))
         if len(corner):
-            self._corners(corner, row[corner], columns)
-        path = before.with_rows(counts, **columns)
-        return path.replace(feed=_feeds(before, path, row))
+            self._lead_around(corner, first[self.row[corner]], end, columns)
+        after = path.with_rows(counts, **columns)
+        return after.replace(feed=_feeds(path, after, row))
 
-    def _corners(self, places: Ints, rows: Ints, columns: dict[str, Any]) -> None:
-        """Write the rows that lead around outside corners; each is before one of `rows`."""
-        path, edges = self.before, [self.inserted[row] for row in rows.tolist()]
-        of = {plane: gx.Plane(plane).axes[:2] for plane in {*path.plane[rows].tolist()}}
-        at = np.arange(len(rows))[:, None], np.array([of[n] for n in path.plane[rows].tolist()])
-        begin, corner = (
-            np.array(each) for each in zip(*((e.begin, e.start) for e in edges), strict=True)
-        )
+    def _ends(self) -> Floats:
+        """Return where moves end; those that stand still in the plane stand where the centre is."""
+        path, still = self.path, self.still
+        end = np.array(path.end)
+        end[self.row, self.axes] = self.made.finish
+        mover = self.row[np.searchsorted(self.row, still) - 1]
+        axes = AXES[:, path.plane[still]]
+        end[still, axes] = end[mover, axes]
+        return end
+
+    def _lead_around(
+        self, corner: Ints, places: Ints, end: Floats, columns: dict[str, Any]
+    ) -> None:
+        """Write the rows that lead around outside corners, before moves (m,), to their places."""
+        path, rows, axes = self.path, self.row[corner], self.axes[:, corner]
+        begin, point = self.made.begin[:, corner], self.moves.start[:, corner]
         rapid = path.kind[rows] == gx.Kind.RAPID
-        around = ~rapid & np.array([edge.corner == "arc" for edge in edges])
-        before = self.end[rows - 1]
-        end, centre = before.copy(), before[:, :3].copy()
-        end[at], centre[at] = begin, corner
+        around = ~rapid & self.made.around[corner]
+        before = end[rows - 1]
+        ends, centre, each = before.copy(), before[:, :3].copy(), np.arange(len(rows))
+        ends[each, axes], centre[each, axes] = begin, point
         turned = np.where(path.side[rows] > 0, gx.Kind.ARC_CW, gx.Kind.ARC_CCW)
         straight = np.where(rapid, gx.Kind.RAPID, gx.Kind.LINE)
-        columns["end"][places] = end
+        columns["end"][places] = ends
         columns["kind"][places] = np.where(around, turned, straight)
         columns["centre"][places] = np.where(around[:, None], centre, np.nan)
-        columns["sweep"][places] = np.where(around, turns_about(before[at], corner, begin), 0.0)
+        sweep = turns_about(before[each, axes], point, begin)
+        columns["sweep"][places] = np.where(around, sweep, 0.0)
+
+
+def _moves_in_plane(path: gx.Toolpath, rows: Ints) -> Flags:
+    """Return which of the rows are arcs, or do not stand still in their planes."""
+    axes = AXES[:, path.plane[rows]]
+    way = np.abs(path.start[rows, axes] - path.end[rows, axes])
+    return np.asarray(path.is_arc[rows] | (way[0] + way[1] > STILL))
+
+
+def _moves(path: gx.Toolpath, row: Ints, begins: Flags) -> Moves:
+    """Return rows as moves in their planes."""
+    axes = AXES[:, path.plane[row]]
+    start, end, centre = (points[row, axes] for points in (path.start, path.end, path.centre))
+    sense, sweep, side = path.sense[row], path.sweep[row], path.side[row].astype(float)
+    return Moves(start, end, centre, sense, sweep, side, path.radius[row], begins[row])
+
+
+def _offset(path: gx.Toolpath, row: Ints, moves: Moves, manner: Manner) -> Offset:
+    """Compensate rows. Raises ContourError."""
+    try:
+        return offset(moves, manner)
+    except CannotOffsetError as error:
+        farther = moves.begins[error.index]
+        way_out = "begin farther away" if farther else "change the contour"
+        hint = f"use a smaller tool, or {way_out}"
+        refusal = path.refuse("GX350", row[[error.index]], error.message, hint)
+        raise ContourError(refusal.diagnostics, error.alarm) from None
 
 
 def _inserted_before(source: Ints, counts: Ints) -> Ints:

@@ -1,7 +1,9 @@
-"""The centre path of a cutter beside a contour: offset moves, inside and outside corners.
+"""The centre path of a cutter beside contours: offset moves, inside and outside corners.
 
-Everything is in the coordinates of one plane, mm, scalar. `side` is +1 where the tool is left of
-the contour and -1 where it is right. What is computed is what LinuxCNC's interpreter executes:
+All contours of a window are worked at once, in columns: each move in the coordinates of its plane,
+mm, points as (2, n). `side` is +1 where the tool is left of the contour and -1 where it is right.
+Where a move begins and ends depends on it and its neighbours alone, so no corner waits for another.
+What is computed is what LinuxCNC's interpreter executes:
 
 - the move that begins compensation goes straight to the point beside its own end; an arc goes there
   as an arc that ends in the same direction;
@@ -16,20 +18,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import pairwise
-from math import atan2, ceil, hypot, pi, sqrt, tau
 
 import numpy as np
 
-from gcxform.vocabulary import Floats
-
-Point = tuple[float, float]
+from gcxform.vocabulary import Flags, Floats, Ints
+from gcxform_plugins.passes.cutter_comp.moves import Moves, angle, cross, dot, left_of, unit
 
 SHARP = 0.05  # rad; controls differ on corners that are sharper
 WHOLE = 0.5  # rad; an arc that begins compensation has to be so much less than a turn
 LONGER = 0.025  # rad; so much may an arc gain where it begins off its own normal
 STILL = 1e-6  # mm; what is as near is at one place
 BACK = 1e-6  # rad; a line that goes back the way it came
+TURN = 2 * np.pi
+BEGIN, JOIN, DIRECTION = range(3)  # the steps, in the order in which a contour is refused
 
 
 class Corners(StrEnum):
@@ -73,290 +74,261 @@ class CannotOffsetError(Exception):
         self.alarm = alarm
 
 
-@dataclass(slots=True)
-class Edge:
-    """A move of the contour, and what becomes of it.
+@dataclass(frozen=True)
+class Offset:
+    """What becomes of moves; the steps fill it in place.
 
-    start, end      of the contour; `centre` of an arc, `sense` +1 counter-clockwise, `sweep` in rad
-    first, last     unit tangents at start and end
-    begin, finish   where the centre path begins and ends it
-    corner          what comes before it: "", "arc" or "line"
-    middle          centre of the centre path of an arc that begins compensation
+    begin, finish   (2, n) where the centre path begins and ends them
+    middle          (2, n) its centre of an arc that begins compensation; nan elsewhere
+    sweep           (n,) rad, of arcs
+    around, across  (n,) whether an arc, or a line, comes before the move, at an outside corner
     """
 
-    start: Point
-    end: Point
-    centre: Point | None = None
-    sense: int = 0
-    sweep: float = 0.0
-    first: Point = (0.0, 0.0)
-    last: Point = (0.0, 0.0)
-    begin: Point = (0.0, 0.0)
-    finish: Point = (0.0, 0.0)
-    corner: str = ""
-    middle: Point | None = None
+    begin: Floats
+    finish: Floats
+    middle: Floats
+    sweep: Floats
+    around: Flags
+    across: Flags
 
-    def __post_init__(self) -> None:
-        self.first = self.direction(self.start)
-        self.last = self.first if self.centre is None else self.direction(self.end)
-
-    def direction(self, at: Point) -> Point:
-        """Return the unit tangent of the move, or of its offset curve, at a point."""
-        if self.centre is None:
-            return _unit(self.end[0] - self.start[0], self.end[1] - self.start[1])
-        x, y = _unit(at[0] - self.centre[0], at[1] - self.centre[1])
-        return (-y * self.sense, x * self.sense)
-
-    @property
-    def length(self) -> float:
-        """The length of a line."""
-        return hypot(self.end[0] - self.start[0], self.end[1] - self.start[1])
-
-    @property
-    def radius(self) -> float:
-        """The radius of an arc at its start."""
-        assert self.centre is not None
-        return hypot(self.start[0] - self.centre[0], self.start[1] - self.centre[1])
-
-    def reach(self, side: int, radius: float) -> float:
-        """Return the radius of an arc's centre path."""
-        return self.radius - side * self.sense * radius
-
-
-def offset(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
-    """Compensate the moves of a contour, in place; the first begins compensation.
-
-    Raises CannotOffsetError.
-    """
-    _begin(edges, side, radius, manner)
-    turns = [_turn(one, other, side) for one, other in pairwise(edges)]
-    for index in range(1, len(edges)):
-        edge = edges[index]
-        if edge.centre is not None and edge.reach(side, radius) < 1e-9:
-            message = "the radius of the arc is not larger than the tool's"
-            raise CannotOffsetError(index, message, alarm=True)
-        edge.begin = _beside(edge.start, edge.first, side, radius)
-        edge.finish = _beside(edge.end, edge.last, side, radius)
-        if index > 1 or manner.entry is Entry.OWN:
-            _join(edges, index, turns[index - 1], side, radius, manner)
-        else:
-            edges[0].finish = edge.begin
-    for index in range(len(edges)):
-        _check_direction(edges, index, _ends_inside(index, turns, manner))
-
-
-def swept(edge: Edge) -> float:
-    """Return the sweep (rad) of the centre path of an arc: the contour's, trimmed at its ends."""
-    assert edge.centre is not None
-    if edge.middle is not None:
-        return edge.sense * _angle(edge.begin, edge.finish, edge.middle) % tau
-    at_start = _angle(edge.start, edge.begin, edge.centre)
-    at_end = _angle(edge.end, edge.finish, edge.centre)
-    return edge.sweep + edge.sense * (at_end - at_start)
-
-
-def _begin(edges: list[Edge], side: int, radius: float, manner: Manner) -> None:
-    """Place the move that begins compensation."""
-    edge = edges[0]
-    if edge.centre is not None:
-        _begin_with_arc(edge, side, radius, manner)
-        return
-    if edge.length <= radius:
-        raise CannotOffsetError(
-            0,
-            f"the move that begins compensation is {edge.length:.4f} mm long, which is not more "
-            f"than the tool's radius of {radius:.4f} mm",
-            alarm=True,
+    @classmethod
+    def beside(cls, moves: Moves) -> Offset:
+        """Return moves that begin and end at right angles beside their own ends."""
+        count = len(moves.sense)
+        begin, finish = (
+            at + moves.off * left_of(along)
+            for at, along in ((moves.start, moves.first), (moves.end, moves.last))
         )
-    edge.begin = edge.start
-    edge.finish = _beside(edge.end, edge.last, side, radius)
+        around, across = np.zeros((2, count), np.bool_)
+        return cls(begin, finish, np.full((2, count), np.nan), np.zeros(count), around, across)
 
 
-def _begin_with_arc(edge: Edge, side: int, radius: float, manner: Manner) -> None:
-    """Place an arc that begins compensation: from its start, and in its direction at its end.
+class _Refusals:
+    """What cannot be compensated: the first is told, contour by contour and step by step."""
 
-    Its centre is on the line from the point beside its end, f, to the programmed one, along the
-    unit vector u, at t from f: |p - f - t u| = |t| with p its start, so t = |p - f|^2 / 2 (p - f).u
+    def __init__(self, begins: Flags) -> None:
+        self.contour = np.cumsum(begins)
+        self.found: list[tuple[tuple[int, int, int], str, bool]] = []
+
+    def add(self, step: int, wrong: Flags, message: str, alarm: Flags | bool = False) -> None:
+        """Take note of the first of the moves (n,) that are wrong in a step."""
+        k = int(wrong.argmax())
+        if wrong[k]:
+            alarms = bool(np.broadcast_to(alarm, wrong.shape)[k])
+            self.found.append(((int(self.contour[k]), step, k), message, alarms))
+
+    def check(self) -> None:
+        """Raise CannotOffsetError about the first of all."""
+        if self.found:
+            (_, _, k), message, alarm = min(self.found, key=lambda each: each[0])
+            raise CannotOffsetError(k, message, alarm)
+
+
+def offset(moves: Moves, manner: Manner) -> Offset:
+    """Compensate the moves of contours. Raises CannotOffsetError."""
+    if not len(moves.begins):
+        return Offset.beside(moves)
+    refusals = _Refusals(moves.begins)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        made = Offset.beside(moves)
+        _begin(moves, made, manner, refusals)
+        _join(moves, made, manner, refusals)
+        made.sweep[:] = _swept(moves, made)
+        _check_directions(moves, made, manner, refusals)
+    refusals.check()
+    return made
+
+
+def _begin(moves: Moves, made: Offset, manner: Manner, refusals: _Refusals) -> None:
+    """Place the moves that begin compensation."""
+    lines, arcs = moves.begins & ~moves.arc, moves.begins & moves.arc
+    length = np.hypot(*(moves.end - moves.start))
+    short = lines & ~(length > moves.radius)
+    k = int(short.argmax())
+    message = f"the move that begins compensation is {length[k]:.4f} mm long, which is not more "
+    message += f"than the tool's radius of {moves.radius[k]:.4f} mm"
+    refusals.add(BEGIN, short, message, alarm=True)
+    made.begin[:, moves.begins] = moves.start[:, moves.begins]
+    if arcs.any():
+        if not manner.enters_by_arc:
+            refusals.add(BEGIN, arcs, "compensation begins with an arc")
+        _begin_with_arcs(moves, np.flatnonzero(arcs), made, refusals)
+
+
+def _begin_with_arcs(moves: Moves, k: Ints, made: Offset, refusals: _Refusals) -> None:
+    """Place arcs that begin compensation: from their start, and in their direction at their end.
+
+    The centre is on the line from the point beside the end, f, to the programmed one, along the
+    unit vector u, at t from f: |p - f - t u| = |t| with p the start, so t = |p - f|^2 / 2 (p - f).u
     """
-    assert edge.centre is not None
-    if not manner.enters_by_arc:
-        raise CannotOffsetError(0, "compensation begins with an arc")
-    if edge.radius <= radius:
-        message = "the radius of the arc that begins compensation is not larger than the tool's"
-        raise CannotOffsetError(0, message, alarm=True)
-    edge.begin, edge.finish = edge.start, _beside(edge.end, edge.last, side, radius)
-    u = _unit(edge.centre[0] - edge.end[0], edge.centre[1] - edge.end[1])
-    w = edge.start[0] - edge.finish[0], edge.start[1] - edge.finish[1]
-    along = w[0] * u[0] + w[1] * u[1]
-    if along <= STILL or edge.sweep > tau - WHOLE:
-        raise CannotOffsetError(0, "the arc that begins compensation is nearly a whole circle")
-    reach = (w[0] ** 2 + w[1] ** 2) / (2 * along)
-    edge.middle = edge.finish[0] + reach * u[0], edge.finish[1] + reach * u[1]
+    small = np.hypot(*(moves.start - moves.centre)) <= moves.radius
+    message = "the radius of the arc that begins compensation is not larger than the tool's"
+    refusals.add(BEGIN, _only(small, k), message, alarm=True)
+    f = made.finish[:, k]
+    u, w = unit(moves.centre[:, k] - moves.end[:, k]), moves.start[:, k] - f
+    along = dot(w, u)
+    whole = np.zeros(len(small), np.bool_)
+    whole[k] = (along <= STILL) | (moves.sweep[k] > TURN - WHOLE)
+    message = "the arc that begins compensation is nearly a whole circle"
+    refusals.add(BEGIN, whole, message)
+    made.middle[:, k] = f + dot(w, w) / (2 * along) * u
 
 
-def _join(
-    edges: list[Edge], index: int, turn: float, side: int, radius: float, manner: Manner
-) -> None:
-    """Join a move with the one before it at their corner, at which the contour makes a turn."""
-    one, other = edges[index - 1], edges[index]
-    if abs(turn) <= manner.straight:
-        other.begin = one.finish
-    elif one.middle is not None and not turn < 0:
-        raise CannotOffsetError(index, "an inside corner behind an arc that begins compensation")
-    elif _closes(other, turn, side):
-        one.finish = other.begin = _meeting(one, other, index, side, radius)
-    elif _turns_back(one, other, turn):
-        raise CannotOffsetError(index, "the contour turns back on itself")
-    elif turn < 0 or turn > pi - BACK:
-        _outside(one, other, index, radius, manner)
-    else:
-        one.finish = other.begin = _meeting(one, other, index, side, radius)
-
-
-def _outside(one: Edge, other: Edge, index: int, radius: float, manner: Manner) -> None:
-    """Lead around an outside corner."""
+def _join(moves: Moves, made: Offset, manner: Manner, refusals: _Refusals) -> None:
+    """Join moves with those before them at their corners."""
+    small = moves.arc & ~moves.begins & ~(moves.reach >= 1e-9)
+    refusals.add(JOIN, small, "the radius of the arc is not larger than the tool's", alarm=True)
+    joined = ~moves.begins
+    if manner.entry is Entry.NEXT:
+        enters = np.flatnonzero(moves.begins & ~moves.ends)
+        made.finish[:, enters] = made.begin[:, enters + 1]
+        joined[enters + 1] = False
+    turn = moves.turn
+    straight = joined & (np.abs(turn) <= manner.straight)
+    k = np.flatnonzero(straight)
+    made.begin[:, k] = made.finish[:, k - 1]
+    corner = joined & ~straight
+    closes = corner & _closes(moves)
+    outside = corner & ~closes & ((turn < 0) | (turn > np.pi - BACK))
+    blocked = corner & _behind(moves.begins & moves.arc) & ~(turn < 0)
+    message = "an inside corner behind an arc that begins compensation"
+    refusals.add(JOIN, blocked, message)
+    back = corner & ~closes & _turns_back(moves)
+    refusals.add(JOIN, back, "the contour turns back on itself")
     if manner.corners is Corners.ARC:
-        other.corner = "arc"
-        return
-    if one.centre is not None or other.centre is not None:
-        raise CannotOffsetError(index, "an outside corner beside an arc has no linear joint")
-    u, v = one.last, other.first
-    along = u[0] * v[0] + u[1] * v[1]
-    reach = radius
-    if along >= -1e-12:  # the offset lines meet within a radius
-        reach = radius * sqrt(max(0.0, 1 - along) / (1 + along))
+        made.around[:] = outside
     else:
-        other.corner = "line"
-    one.finish = (one.finish[0] + reach * u[0], one.finish[1] + reach * u[1])
-    other.begin = (other.begin[0] - reach * v[0], other.begin[1] - reach * v[1])
+        _lengthen(moves, outside, made, refusals)
+    _meet(moves, np.flatnonzero(corner & ~outside), made, refusals)
 
 
-def _meeting(one: Edge, other: Edge, index: int, side: int, radius: float) -> Point:
-    """Return where the offset curves of two neighbours meet inside their corner."""
-    if one.centre is None and other.centre is None:
-        u, v = one.last, other.first
-        along = u[0] * v[0] + u[1] * v[1]
-        reach = side * radius / (1 + along)
-        x, y = other.start
-        return (x - reach * (u[1] + v[1]), y + reach * (u[0] + v[0]))
-    for point in _crossings(one, other, side, radius):
-        u, v = one.direction(point), other.direction(point)
-        if side * (u[0] * v[1] - u[1] * v[0]) >= 0:  # at the other crossing it turns outwards
-            return point
-    raise CannotOffsetError(index, "the tool does not fit into the inside corner", alarm=True)
+def _lengthen(moves: Moves, outside: Flags, made: Offset, refusals: _Refusals) -> None:
+    """Lead around outside corners by lines that meet, or by a line between them."""
+    round_it = outside & (moves.arc | _behind(moves.arc))
+    refusals.add(JOIN, round_it, "an outside corner beside an arc has no linear joint")
+    k = np.flatnonzero(outside & ~round_it)
+    u, v, reach = moves.last[:, k - 1], moves.first[:, k], moves.radius[k]
+    along = dot(u, v)
+    meet = along >= -1e-12  # the offset lines meet within a radius
+    reach = np.where(meet, reach * np.sqrt(np.maximum(0.0, 1 - along) / (1 + along)), reach)
+    made.across[k] = ~meet
+    made.finish[:, k - 1] += reach * u
+    made.begin[:, k] -= reach * v
 
 
-def _crossings(one: Edge, other: Edge, side: int, radius: float) -> list[Point]:
-    """Return the points where two offset curves, at least one of them a circle, cross."""
-    if one.centre is None:
-        return _line_and_circle(one, other, side, radius)
-    if other.centre is None:
-        return _line_and_circle(other, one, side, radius)
-    a, b = one.reach(side, radius), other.reach(side, radius)
-    dx, dy = other.centre[0] - one.centre[0], other.centre[1] - one.centre[1]
-    apart = hypot(dx, dy)
-    if apart < 1e-9:
-        return []
-    along = (apart * apart + a * a - b * b) / (2 * apart)
-    return _either_side(one.centre, (dx / apart, dy / apart), along, a)
+def _meet(moves: Moves, k: Ints, made: Offset, refusals: _Refusals) -> None:
+    """Let moves meet those before them inside their corners."""
+    u, v = moves.last[:, k - 1], moves.first[:, k]
+    reach = moves.off[k] / (1 + dot(u, v))
+    at = moves.start[:, k] + reach * (left_of(u) + left_of(v))
+    bent = np.flatnonzero(moves.arc[k] | moves.arc[k - 1])
+    if len(bent):
+        at[:, bent] = _crossing(moves, k[bent])
+        none = np.zeros(len(moves.sense), np.bool_)
+        none[k[bent]] = np.isnan(at[0, bent])
+        refusals.add(JOIN, none, "the tool does not fit into the inside corner", alarm=True)
+    made.begin[:, k] = made.finish[:, k - 1] = at
 
 
-def _line_and_circle(line: Edge, arc: Edge, side: int, radius: float) -> list[Point]:
-    assert arc.centre is not None
-    ux, uy = line.last
-    foot = side * radius
-    px, py = line.end[0] - foot * uy, line.end[1] + foot * ux
-    across = (px - arc.centre[0]) * -uy + (py - arc.centre[1]) * ux
-    return _either_side(arc.centre, (-uy, ux), across, arc.reach(side, radius))
+def _crossing(moves: Moves, k: Ints) -> Floats:
+    """Return where offset curves (2, m), of which one is a circle, cross those before; or nan."""
+    centre, axis, along, size = _circles(moves, k)
+    across = np.sqrt(size * size - along * along)
+    found = np.full((2, len(k)), np.nan)
+    for sign in (1, -1):  # at the other crossing it turns outwards
+        point = centre + along * axis + sign * across * left_of(axis)
+        turns = cross(moves.heading(k - 1, point), moves.heading(k, point))
+        found = np.where(np.isnan(found) & (moves.side[k] * turns >= 0), point, found)
+    return found
 
 
-def _either_side(centre: Point, axis: Point, along: float, size: float) -> list[Point]:
-    """Return the points of a circle that are `along` away from its centre in an axis' direction."""
-    rest = size * size - along * along
-    if rest < 0:
-        return []
-    x, y = centre[0] + along * axis[0], centre[1] + along * axis[1]
-    across = sqrt(rest)
-    return [
-        (x - across * axis[1], y + across * axis[0]),
-        (x + across * axis[1], y - across * axis[0]),
-    ]
+def _circles(moves: Moves, k: Ints) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return circles and lines across them, on which they cross the other curves of corners.
 
-
-def _closes(other: Edge, turn: float, side: int) -> bool:
-    """Whether a corner that turns back is the inside of a valley, because the arc after it leaves.
-
-    The tool then comes to rest on both sides of it.
+    That is centres (2, m), directions (2, m) at right angles to the lines, how far (m,) the lines
+    are away in them, and radii (m,).
     """
-    if other.centre is None or side * other.sense > 0:
-        return False
-    return turn > pi - SHARP or turn < BACK - pi
+    one_bent, other_bent = moves.arc[k - 1], moves.arc[k]
+    arc, line = np.where(one_bent, k - 1, k), np.where(one_bent, k, k - 1)
+    centre, size = moves.centre[:, arc], moves.reach[arc]
+    normal = left_of(moves.last[:, line])
+    foot = moves.end[:, line] + moves.off[line] * normal
+    along = dot(foot - centre, normal)
+    both = one_bent & other_bent
+    if both.any():
+        way = moves.centre[:, k] - centre
+        apart = np.hypot(*way)
+        other = moves.reach[k]
+        axis = np.where(apart < 1e-9, np.nan, way / apart)
+        away = (apart * apart + size * size - other * other) / (2 * apart)
+        normal, along = np.where(both, axis, normal), np.where(both, away, along)
+    return centre, normal, along, size
 
 
-def _turns_back(one: Edge, other: Edge, turn: float) -> bool:
-    """Whether a corner is so sharp that it has neither an inside nor an outside.
+def _closes(moves: Moves) -> Flags:
+    """Whether the corner before a move (n,) that turns back is the inside of a valley.
+
+    That is where it is an arc that leaves: the tool then comes to rest on both sides of the corner.
+    """
+    leaves = moves.arc & ~(moves.side * moves.sense > 0)
+    return np.asarray(leaves & ((moves.turn > np.pi - SHARP) | (moves.turn < BACK - np.pi)))
+
+
+def _turns_back(moves: Moves) -> Flags:
+    """Whether the corner before a move (n,) is so sharp that it has neither inside nor outside.
 
     Two lines may turn by 180 degrees, or on the outside by nearly as much.
     """
-    if one.centre is not None or other.centre is not None:
-        return abs(turn) > pi - SHARP
-    return pi - SHARP < turn < pi - BACK
+    bent = moves.arc | _behind(moves.arc)
+    sharp = np.where(bent, np.abs(moves.turn), moves.turn) > np.pi - SHARP
+    return np.asarray(sharp & (bent | (moves.turn < np.pi - BACK)))
 
 
-def _ends_inside(index: int, turns: list[float], manner: Manner) -> bool:
-    """Whether a move ends at an inside corner or is the last: there LinuxCNC looks back at it."""
-    if index in (0, len(turns)):
-        return index > 0
-    return turns[index] > manner.straight
+def _swept(moves: Moves, made: Offset) -> Floats:
+    """Return the sweeps (n,), rad, of arcs: those of the contour, trimmed at their ends."""
+    at_start = angle(moves.start - moves.centre, made.begin - moves.centre)
+    at_end = angle(moves.end - moves.centre, made.finish - moves.centre)
+    trimmed = moves.sweep + moves.sense * (at_end - at_start)
+    whole = angle(made.begin - made.middle, made.finish - made.middle)
+    return np.where(np.isnan(made.middle[0]), trimmed, moves.sense * whole % TURN)
 
 
-def _turn(one: Edge, other: Edge, side: int) -> float:
-    """Return the angle (rad) by which a contour turns from move to move; inwards is positive."""
-    u, v = one.last, other.first
-    return side * atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+def _check_directions(moves: Moves, made: Offset, manner: Manner, refusals: _Refusals) -> None:
+    """Refuse moves that their inside corners leave nothing of.
+
+    LinuxCNC looks back at those which end at an inside corner, or are the last.
+    """
+    inside = np.append(moves.turn[1:] > manner.straight, True)
+    alarm = ~moves.begins & (moves.ends | inside)
+    arcs = moves.arc & ~moves.begins
+    lost = arcs & ~((made.sweep >= 0) & (made.sweep <= moves.sweep + LONGER))
+    refusals.add(DIRECTION, lost, "the tool cannot reach the arc between inside corners", alarm)
+    more = _turns(made.sweep) > _turns(moves.sweep)
+    refusals.add(DIRECTION, arcs & more, "the circle would be cut by more than a turn")
+    back = ~moves.arc & ~(dot(made.finish - made.begin, moves.first) >= -1e-9)
+    refusals.add(DIRECTION, back, "the tool cannot reach the move between inside corners", alarm)
 
 
-def _check_direction(edges: list[Edge], index: int, alarm: bool) -> None:
-    """Refuse a move that its inside corners leave nothing of."""
-    edge = edges[index]
-    if edge.middle is not None:
-        return
-    if edge.centre is not None:
-        sweep = swept(edge)
-        if not 0 <= sweep <= edge.sweep + LONGER:
-            message = "the tool cannot reach the arc between inside corners"
-            raise CannotOffsetError(index, message, alarm)
-        if ceil(sweep / tau - 1e-9) > ceil(edge.sweep / tau - 1e-9):
-            raise CannotOffsetError(index, "the circle would be cut by more than a turn")
-        return
-    way = (edge.finish[0] - edge.begin[0]) * edge.first[0]
-    way += (edge.finish[1] - edge.begin[1]) * edge.first[1]
-    if way < -1e-9:
-        message = "the tool cannot reach the move between inside corners"
-        raise CannotOffsetError(index, message, alarm)
+def _turns(sweep: Floats) -> Floats:
+    """Return of how many turns (n,) something is a part."""
+    return np.asarray(np.ceil(sweep / TURN - 1e-9))
 
 
-def _beside(at: Point, along: Point, side: int, radius: float) -> Point:
-    """Return the point beside another, at right angles to a direction."""
-    return (at[0] - side * radius * along[1], at[1] + side * radius * along[0])
+def _behind(flags: Flags) -> Flags:
+    """Return the flags (n,) of the moves before."""
+    return np.append(False, flags[:-1])
 
 
-def _unit(x: float, y: float) -> Point:
-    size = hypot(x, y)
-    return (x / size, y / size)
-
-
-def _angle(one: Point, other: Point, centre: Point) -> float:
-    """Return the angle (rad, -pi to pi) from one point to another as seen from a centre."""
-    ux, uy = one[0] - centre[0], one[1] - centre[1]
-    vx, vy = other[0] - centre[0], other[1] - centre[1]
-    return atan2(ux * vy - uy * vx, ux * vx + uy * vy)
+def _only(flags: Flags, k: Ints) -> Flags:
+    """Return the flags (n,) of some moves, and False of all others."""
+    only = np.zeros_like(flags)
+    only[k] = flags[k]
+    return only
 
 
 def turns_about(ends: Floats, corners: Floats, begins: Floats) -> Floats:
     """Return the angles (n,), rad, about corners from where moves end to where the next begin.
 
-    All points are (n, 2), mm.
+    All points are (2, n), mm.
     """
-    (ux, uy), (vx, vy) = (ends - corners).T, (begins - corners).T
-    return np.asarray(np.abs(np.arctan2(ux * vy - uy * vx, ux * vx + uy * vy)))
+    return np.abs(angle(ends - corners, begins - corners))
