@@ -476,3 +476,6 @@ def test_stretches_are_cut_where_none_is_open(seed: int, monkeypatch: pytest.Mon
     found = list(whole_stretches(iter(texts)))
     assert b"".join(found) == b"".join(texts)
     assert {*accumulate(map(len, found[:-1]))} <= clean(b"".join(texts))
+    for size in (0, 6, 14, 30):  # however little of the end is looked at
+        monkeypatch.setattr("gcxform.pipeline.cutter_comp.TAIL", size)
+        assert list(whole_stretches(iter(texts))) == found

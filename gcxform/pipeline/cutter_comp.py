@@ -15,6 +15,7 @@ the radius, which is asked for.
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -33,6 +34,8 @@ from gcxform.toolpath.path import Toolpath
 CODE = re.compile(rb"G[ \t]*0*4[ \t]*([012])")
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 SMALL = 1 << 17  # bytes; so much may wait, and what is seen together is said together
+TAIL = 1 << 13  # bytes; by the end of a text it is mostly decided what is open there
+UNSEEN = sys.maxsize  # where a stretch begins that a text begins within
 AXIS = re.compile(rb"[XYZ]")
 WHICH = ("kind", "plane", "source", "nth", "form", "side")
 WHERE = ("start", "end", "centre", "sweep", "radius")
@@ -86,7 +89,7 @@ def whole_stretches(texts: Iterator[bytes]) -> Iterator[bytes]:
     size, stretch = 0, _Stretch()
     for text in texts:
         if stretch.begins >= 0 or has_sign(CODE, text):
-            stretch.follow(COMMENT.sub(lambda found: b" " * len(found[0]), text).upper(), size)
+            stretch.follow(text, size)
         waiting.append(text)
         size += len(text)
         at = stretch.begins if stretch.begins >= 0 else size
@@ -106,13 +109,27 @@ class _Stretch:
     the last code, `seen` the axes that have been named since.
     """
 
-    def __init__(self) -> None:
-        self.begins = -1
+    def __init__(self, begins: int = -1) -> None:
+        self.begins = begins
         self.off = False
         self.seen: set[bytes] = set()
 
-    def follow(self, plain: bytes, before: int) -> None:
-        """Go on through a text without comments, with so many bytes before it."""
+    def follow(self, text: bytes, before: int) -> None:
+        """Go on through a text of whole lines, with so many bytes before it.
+
+        Only its end counts: where a stretch begins or is left there, nothing hangs on those before.
+        """
+        at = text.rfind(b"\n", 0, max(0, len(text) - TAIL)) + 1
+        tail = _Stretch(UNSEEN)
+        if at:
+            tail._follow(_blanked(text[at:]), before + at)
+        if at and tail.begins != UNSEEN:
+            self.begins, self.off, self.seen = tail.begins, tail.off, tail.seen
+        else:
+            self._follow(_blanked(text), before)
+
+    def _follow(self, plain: bytes, before: int) -> None:
+        """Go on through a text without comments."""
         last, left = self.begins, -1  # where the last one began, and where in this text it was left
         codes, line = [*CODE.finditer(plain)], 0
         left = self._leave(plain, 0, codes[0].start() if codes else len(plain), left)
@@ -134,6 +151,11 @@ class _Stretch:
                 self.begins = -1
                 return word.end()
         return left
+
+
+def _blanked(text: bytes) -> bytes:
+    """Return a text of the same length in capital letters, with blanks for its comments."""
+    return COMMENT.sub(lambda found: b" " * len(found[0]), text).upper()
 
 
 def _line_start(text: bytes, before: int, at: int) -> int:

@@ -204,6 +204,20 @@ MUTATIONS = (
         CUTTER,
     ),
     Mutation(
+        "compensated: what began before the end of a text is forgotten",
+        "gcxform/pipeline/cutter_comp.py",
+        "if at and tail.begins != UNSEEN:",
+        "if at:",
+        CUTTER,
+    ),
+    Mutation(
+        "compensated: a stretch begins as far from the end of a text as from its start",
+        "gcxform/pipeline/cutter_comp.py",
+        "before + at)",
+        "before)",
+        CUTTER,
+    ),
+    Mutation(
         "compensated: windows end inside a stretch",
         "gcxform/pipeline/cutter_comp.py",
         "        at = stretch.begins if stretch.begins >= 0 else size\n",
