@@ -7,17 +7,20 @@ tried: of those that the control takes, the one that moves the arc least is writ
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 
 from gcxform.dialect.move_rules import ArcRule
 from gcxform.modal.moves.arcs import accepts
-from gcxform.system.arrays import Flags, Floats
+from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.toolpath.angles import TURN, swept
 from gcxform.values import dataclass
 
 SWEEP_SLIP = np.radians(1.0)  # a sweep that changes by more in formatting is another arc
 STRICT = 0.002  # mm; tighter than any control asks, so that the arc passes elsewhere too
 REACH = 2  # grid points tried on either side of the centre
+NEAREST = 0.49  # of a step; all other points are farther from a centre than that
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,10 @@ class ArcEnds:
     spiral: Floats
     inch: Flags
 
+    def take(self, k: Ints) -> ArcEnds:
+        """Return some of the arcs."""
+        return ArcEnds(*(getattr(self, each.name)[k] for each in fields(self)))
+
 
 def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Flags]:
     """Return the centre words (n, 2) as whole numbers of the last decimal, and which arcs are good.
@@ -48,6 +55,15 @@ def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Fla
     near = _rounded((arcs.centre - arcs.base) / arcs.step[:, None])
     if not refit:
         return near, _good(arcs, near, rule)
+    least = _cost(arcs, near, rule)
+    open_ones = np.flatnonzero(~(least < NEAREST * arcs.step))
+    if len(open_ones):
+        near[open_ones], least[open_ones] = _refitted(arcs.take(open_ones), near[open_ones], rule)
+    return near, np.isfinite(least) & _good(arcs, near, rule)
+
+
+def _refitted(arcs: ArcEnds, near: Floats, rule: ArcRule) -> tuple[Floats, Floats]:
+    """Return the best of the grid points around centres (n, 2), and what they cost (n,), mm."""
     best, least = near, np.full(len(near), np.inf)
     for x in range(-REACH, REACH + 1):
         for y in range(-REACH, REACH + 1):
@@ -55,7 +71,7 @@ def centre_words(arcs: ArcEnds, rule: ArcRule, refit: bool) -> tuple[Floats, Fla
             cost = _cost(arcs, trial, rule)
             best = np.where((cost < least)[:, None], trial, best)
             least = np.minimum(cost, least)
-    return best, np.isfinite(least) & _good(arcs, best, rule)
+    return best, least
 
 
 def _rounded(value: Floats) -> Floats:

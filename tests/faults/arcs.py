@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from faults.mutation import ARCS, Mutation
 
+CENTRES = "tests/test_centres_written.py"
+
 MUTATIONS = (
+    Mutation(
+        "centres: the nearest one is written, whatever its radii",
+        "gcxform/emit/arcs.py",
+        "NEAREST = 0.49",
+        "NEAREST = 99.0",
+        CENTRES,
+    ),
     Mutation(
         "arcs: the sense is swapped",
         "plugins/gcxform_plugins/passes/arcs/fit.py",
