@@ -15,7 +15,10 @@ ENDS = "-corners"
 
 @dataclass(frozen=True)
 class Said:
-    """How corners are joined by the last code before each row of a contour; "" where none was."""
+    """How corners are joined by the last code before each row of a contour; "" where none was.
+
+    There are no rows where nothing is said of any.
+    """
 
     rows: Ints
     ways: tuple[str, ...]
@@ -40,7 +43,7 @@ def corners_said(path: gx.Toolpath, context: gx.PassContext) -> Said:
     said = codes_of(context.source)
     told = [(event.row, said[event.what]) for event in path.events if event.what in said]
     if not told:
-        return Said(rows, ("",) * len(rows))
+        return Said(rows[:0], ())
     ways = ["", *(way for _, way in told)]
     last = np.searchsorted([row for row, _ in told], rows, "right")
     return Said(rows, tuple(ways[k] for k in last.tolist()))

@@ -68,13 +68,13 @@ def prove_beside(
 
 def _plane_axes(path: gx.Toolpath, rows: Ints) -> Ints:
     """Return the two axes of the plane of each row, and the third (n, 3)."""
-    axes: Ints = np.array([gx.Plane(p).axes for p in range(3)])[path.plane[rows]]
-    return axes
+    axes: Ints = np.array([gx.Plane(p).axes for p in range(3)]).T[:, path.plane[rows]]
+    return axes.T  # each of them in one piece
 
 
-def _in_plane(points: Floats, axes: Ints) -> Floats:
-    """Return points in the coordinates of their planes (n, 2)."""
-    return np.asarray(np.take_along_axis(points[:, :3], axes[:, :2], axis=1))
+def _in_plane(points: Floats, rows: Ints, axes: Ints) -> Floats:
+    """Return points of rows in the coordinates of their planes (n, 2)."""
+    return np.asarray(points[rows, axes[:, :2].T].T)
 
 
 def _moving(before: gx.Toolpath, after: gx.Toolpath, main: Ints, on: Ints) -> Ints:
@@ -86,10 +86,11 @@ def _moving(before: gx.Toolpath, after: gx.Toolpath, main: Ints, on: Ints) -> In
     same = (after.end[main[on]] == before.end[on]) | np.isnan(before.end[on])
     np.put_along_axis(same, axes[:, :2], True, axis=1)
     fail_if(before, on[~same.all(axis=1)], "an axis that is not in the plane moves")
-    p, q = _in_plane(before.start[on], axes), _in_plane(before.end[on], axes)
-    a, b = _in_plane(after.start[main[on]], axes), _in_plane(after.end[main[on]], axes)
-    moves = before.is_arc[on] | (np.abs(p - q).sum(axis=1) > 1e-9)
-    fail_if(before, on[~moves & (np.abs(a - b).sum(axis=1) > CLOSE)], "it moves aside")
+    made = main[on]
+    p, q = (_in_plane(points, on, axes) for points in (before.start, before.end))
+    a, b = (_in_plane(points, made, axes) for points in (after.start, after.end))
+    moves = before.is_arc[on] | (_apart(p, q) > 1e-9)
+    fail_if(before, on[~moves & (_apart(a, b) > CLOSE)], "it moves aside")
     return np.asarray(on[moves])
 
 
@@ -136,9 +137,9 @@ class _Proof:
         """Look at rows in their planes."""
         axes, made = _plane_axes(before, row), main[row]
         programmed = (before.start, before.end, before.centre)
-        p, q, c = (_in_plane(points[row], axes) for points in programmed)
+        p, q, c = (_in_plane(points, row, axes) for points in programmed)
         a, b, d = (
-            _in_plane(points[made], axes) for points in (after.start, after.end, after.centre)
+            _in_plane(points, made, axes) for points in (after.start, after.end, after.centre)
         )
         side, radius, sense = before.side[row].astype(float), before.radius[row], before.sense[row]
         entry = np.append(True, before.side[:-1] == 0)[: len(before)][row]
@@ -192,7 +193,7 @@ class _Proof:
         out = at - self.c
         turned = self.sense[:, None] * np.stack([-out[:, 1], out[:, 0]], axis=1)
         way = np.where(self.arc[:, None], turned, way)
-        return np.asarray(way / np.sqrt((way**2).sum(axis=1))[:, None])
+        return np.asarray(way / _size(way)[:, None])
 
     def _offset(self, x: Floats, size: Floats) -> Floats:
         """Return h (n,) of points; `size`: the radius of arcs there."""
@@ -268,13 +269,13 @@ class _Proof:
         """Check the moves that lead around corners, before moves by index."""
         rows = self.corner[self.row[k]]
         kind = self.after.kind[rows]
-        begin = _in_plane(self.after.start[rows], self.axes[k])
+        begin = _in_plane(self.after.start, rows, self.axes[k])
         u, v = begin - self.p[k], self.a[k] - self.p[k]
         fail_if(self.before, self.row[k][kind == self._wrong_way(k)], "a corner goes the wrong way")
         rapid = (kind == gx.Kind.RAPID) != (self.before.kind[self.row[k]] == gx.Kind.RAPID)
         fail_if(self.before, self.row[k][rapid], "a corner is a rapid, or its move is")
         round_it = kind >= gx.Kind.ARC_CW
-        middle = _in_plane(self.after.centre[rows], self.axes[k])
+        middle = _in_plane(self.after.centre, rows, self.axes[k])
         far = np.maximum(np.abs(_size(u) - self.radius[k]), np.abs(_size(v) - self.radius[k]))
         far = np.maximum(far, np.nan_to_num(_size(middle - self.p[k]), nan=np.inf))
         angle = np.abs(np.arctan2(_cross(u, v), _dot(u, v)))
@@ -325,8 +326,14 @@ def _dot(u: Floats, v: Floats) -> Floats:
     return np.asarray(u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1])
 
 
+def _apart(u: Floats, v: Floats) -> Floats:
+    """Return how far points (n, 2) are apart, along one axis and the other."""
+    way = np.abs(u - v)
+    return np.asarray(way[:, 0] + way[:, 1])
+
+
 def _size(u: Floats) -> Floats:
-    return np.asarray(np.sqrt((u**2).sum(axis=-1)))
+    return np.asarray(np.sqrt(u[..., 0] ** 2 + u[..., 1] ** 2))
 
 
 def _distance_to_line(points: Floats, p: Floats, q: Floats) -> Floats:

@@ -69,10 +69,13 @@ def _check_feeds(before: gx.Toolpath, after: gx.Toolpath, owner: Ints) -> None:
     """Check the feeds; in inverse time the speed is the contour's: F of l mm is F l / m of m mm."""
     timed = (before.feed_mode == gx.FeedMode.INVERSE_TIME) & (before.side != 0)
     timed &= before.kind != gx.Kind.RAPID
-    feed, programmed, made = before.feed[owner], _lengths(before)[owner], _lengths(after)
-    goes = timed[owner] & (np.minimum(programmed, made) > CLOSE)
-    same = (after.feed == feed) | np.isnan(feed) | (timed[owner] & ~goes)
-    same |= goes & (np.abs(after.feed * made - feed * programmed) <= SLIP * feed * programmed)
+    feed = before.feed[owner]
+    same = (after.feed == feed) | np.isnan(feed)
+    if timed.any():
+        programmed, made = _lengths(before)[owner], _lengths(after)
+        goes = timed[owner] & (np.minimum(programmed, made) > CLOSE)
+        same |= timed[owner] & ~goes
+        same |= goes & (np.abs(after.feed * made - feed * programmed) <= SLIP * feed * programmed)
     fail_if(before, owner[~same], "the feed has changed")
 
 
