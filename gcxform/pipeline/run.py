@@ -93,7 +93,7 @@ class Run:
             self.executed.refuse(self.marks.changes, self.structure is not None)
         self.source, self.dialect = plan.without_tip_codes(self.source)
         self.ending = Ending(self.dialect, source.name)
-        self.books = Books(plan.context, frozenset())
+        self.books = Books(plan.context, frozenset(), self.executed)
         self.others = Others(self.dialect, self.source.name)
         self.account = Account()
         self.frame = Frame()
@@ -137,7 +137,7 @@ class Run:
         where = interpreter.state.position, self.source.name
         emitter = Emitter(plan.manner, *where, self.source.is_called)
         emitter.believed.inch = int(plan.first_units == "in")
-        self.books = Books(plan.context, self._switches())
+        self.books = Books(plan.context, self._switches(), self.executed)
         if self.verify == "off":
             return Stages(interpreter, emitter, None)
         verifier = Verifier(
@@ -278,7 +278,7 @@ class Run:
     def _check_whole(self) -> None:
         """Check that nothing is lost, and that the target takes the file if the source's did."""
         found = self.findings
-        self.account, wrong = self.books.close(found.file, self.executed, found.path_modes)
+        self.account, wrong = self.books.close(found.file, found.path_modes)
         where = Location(self.source.name, max(self.reader.lines, 1))
         if wrong:
             raise VerificationError.one("GX601", wrong, where)

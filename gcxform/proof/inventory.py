@@ -194,10 +194,16 @@ class Others:
 
 
 class Books:
-    """Keeps account of what the windows of a source hold, and closes it with the output's."""
+    """Keeps account of what the windows of a source hold, and closes it with the output's.
 
-    def __init__(self, context: PassContext, switches: frozenset[str]) -> None:
+    `executed` is what its calls and loops have done, if it has any: they set parameters too.
+    """
+
+    def __init__(
+        self, context: PassContext, switches: frozenset[str], executed: Executed | None
+    ) -> None:
         self.context = context
+        self.executed = executed
         self.switches = switches
         self.crossing = context.source is not context.target
         self.held, self.behind, self.live, self.skipped = Tally(), Tally(), Tally(), Tally()
@@ -222,7 +228,8 @@ class Books:
         self.done += sum(event.what in self.switches for event in events)
         self.given += given
         self.inner += given + sum(event.within for event in events)
-        self.assigned += [(each.key, each.value) for each in read.assigned]
+        if self.executed is not None:
+            self.assigned += [(each.key, each.value) for each in read.assigned]
 
     def _say(
         self, events: Sequence[Event], unknown: Sequence[str], ways: Mapping[int, WayHome]
@@ -269,18 +276,16 @@ class Books:
                 if kind := kind_of(name.split(" ")[0], dialect):
                     account.rule_of(rule, kind, sign * count)
 
-    def close(
-        self, output: Written, executed: Executed | None, path_modes: int
-    ) -> tuple[Account, str]:
+    def close(self, output: Written, path_modes: int) -> tuple[Account, str]:
         """Return the account, and what is wrong with it: nothing if it balances.
 
         `path_modes` of the output stand around cycles, as the proof of the moves has found.
         """
         source, target = self.held.total, self.context.target.name
         account = Account(source, output.held)
-        if executed is not None:
-            account.source = executed.held
-            executed.explain(account, source)
+        if self.executed is not None:
+            account.source = self.executed.held
+            self.executed.explain(account, source)
         if self.crossing:
             account.rule("behind the end of the program", -self.behind.total)
             account.rule("skipped because of a slash", -self.skipped.total)
@@ -297,14 +302,14 @@ class Books:
             account.rule("cycles written out, and blocks that are given", account.rest, kinds)
         if not self.crossing and output.behind != self.text_behind.hexdigest():
             return account, "what stands behind the end of the program has changed"
-        return account, self._wrong(account, executed)
+        return account, self._wrong(account)
 
-    def _wrong(self, account: Account, executed: Executed | None) -> str:
+    def _wrong(self, account: Account) -> str:
         """Return why an account does not balance; nothing if it does."""
         for kind, count in zip(KINDS, account.rest.tolist(), strict=True):
             if count:
                 how = "more" if count > 0 else "fewer"
                 return f"the output has {abs(count)} {how} {kind} than the source accounts for"
-        if executed is not None and not executed.agrees(self.assigned):
+        if self.executed is not None and not self.executed.agrees(self.assigned):
             return "the parameters that last are not those that the calls and loops have set"
         return ""

@@ -23,7 +23,7 @@ import numpy as np
 
 from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
 from gcxform.syntax.tree import COMPUTED
-from gcxform.system.arrays import Flags, Floats, Ints
+from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 from gcxform.values import dataclass
 
 BEGIN = b"\1"  # first byte of an outline: no plain line has it
@@ -51,12 +51,26 @@ class Comments:
     cut: bool = False
 
     @cached_property
-    def executed(self) -> re.Pattern[bytes] | None:
+    def looks(self) -> re.Pattern[bytes]:
         """What a comment looks like that the control executes, or that ends before its bracket."""
         names = b"|".join(re.escape(name.encode("latin-1")) for name in self.active)
         looks = [rb"[(;][(; \t]*(?:" + names + rb")"] if names else []
         looks += [rb"\([^()\n]*;"] if self.cut else []
-        return re.compile(b"|".join(looks), re.IGNORECASE) if looks else None
+        return re.compile(b"|".join(looks) or rb"(?!)", re.IGNORECASE)
+
+    @cached_property
+    def leads(self) -> Flags:
+        """Which bytes (256,) may stand behind the sign of such a comment."""
+        letters = "".join(name[0] for name in self.active)
+        leads = np.full(256, self.cut, np.bool_)
+        leads[list((letters.upper() + letters.lower() + "(; \t").encode("latin-1"))] = True
+        return leads
+
+    def executed(self, text: bytes, raw: Bytes) -> list[int]:
+        """Return where such comments begin; most are none by their first letter."""
+        signs = np.flatnonzero((raw[:-1] == 40) | (raw[:-1] == 59))
+        signs = signs[self.leads[raw[signs + 1]]]
+        return [at for at in signs.tolist() if self.looks.match(text, at)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,18 +118,17 @@ class _Scan:
         self.text = text
         self.comments = comments
         self.raw = np.frombuffer(text, np.uint8)
+        self.line = np.repeat(np.arange(len(length), dtype=np.int32), length)
         self.begin = np.cumsum(length) - length
         self.last = self.begin + length - 1
         self.unclear = np.zeros(len(length), np.bool_)
         if any(odd in text for odd in ODD):
             self._refuse(np.flatnonzero((self.raw <= TAIL) | (self.raw == 13)))
-        pattern = comments.executed
-        found = [match.start() for match in pattern.finditer(text)] if pattern else []
-        self._refuse(np.array(found, np.int64))
+        self._refuse(np.array(comments.executed(text, self.raw), np.int64))
 
     def _line(self, at: Ints) -> Ints:
         """Return the lines of some offsets."""
-        return np.searchsorted(self.begin, at, side="right") - 1
+        return self.line[at].astype(np.int64)
 
     def _refuse(self, at: Ints) -> None:
         """Note the lines of some offsets as unclear."""

@@ -201,9 +201,23 @@ MUTATIONS = (
     Mutation(
         "outlines: executed comments are text",
         "gcxform/syntax/outlines.py",
-        "[match.start() for match in pattern.finditer(text)] if pattern else []",
+        "[at for at in signs.tolist() if self.looks.match(text, at)]",
         "[]",
         "tests/properties/test_outlines.py::test_a_comment_that_is_executed_is_no_slot_of_one_that_is_not",
+    ),
+    Mutation(
+        "outlines: a comment that is executed begins with a capital letter",
+        "gcxform/syntax/outlines.py",
+        "letters.upper() + letters.lower() +",
+        "letters.upper() +",
+        "tests/properties/test_outlines.py",
+    ),
+    Mutation(
+        "outlines: a comment that is executed has no blank before its name",
+        "gcxform/syntax/outlines.py",
+        '+ "(; \\t")',
+        '+ "(;")',
+        "tests/properties/test_outlines.py",
     ),
     Mutation(
         "outlines: comments to the end of a line are like those in brackets",

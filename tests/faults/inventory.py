@@ -27,7 +27,7 @@ MUTATIONS = (
     ),
     _proof(
         "what loops have set is ignored",
-        "if executed is not None and not executed.agrees(self.assigned):",
+        "if self.executed is not None and not self.executed.agrees(self.assigned):",
     ),
     _proof(
         "the end is ignored",

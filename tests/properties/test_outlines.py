@@ -102,6 +102,8 @@ def test_what_nobody_has_set_is_not_zero() -> None:
 def test_a_comment_that_is_executed_is_no_slot_of_one_that_is_not() -> None:
     """Lines that are alike but for what their comments say: only the message is an effect."""
     lines = ["G4 P1. (MSG, on)", "G4 P1. (on)", "X1. (wall)", "X2. (DEBUG, wall)", "X3. (wall)"]
+    lines += ["X4. (debug, wall)", "X5. ( MSG, wall)"]
     path = gx.read((HEAD + "\n".join(lines) + "\nM2\n").encode(), "linuxcnc").path
     effects = [(each.line, each.what) for each in path.events if each.what.startswith("(")]
-    assert effects == [(6, "(MSG, on)"), (9, "(DEBUG, wall)")]
+    told = [(6, "(MSG, on)"), (9, "(DEBUG, wall)"), (11, "(debug, wall)"), (12, "( MSG, wall)")]
+    assert effects == told
