@@ -23,7 +23,7 @@ from gcxform.flow.listing import Listing
 from gcxform.flow.lookup import Folders
 from gcxform.flow.macros import MacroB
 from gcxform.flow.owords import OWords
-from gcxform.modal.line_notes import Assigned
+from gcxform.modal.line_notes import Assigned, Assignments
 from gcxform.modal.program_end import Frame
 from gcxform.modal.state import Reading
 from gcxform.plugin.registry import default_registry
@@ -275,11 +275,28 @@ def test_an_assignment_too_few_or_too_many_is_found() -> None:
     context = gx.Pipeline.parse("absolute", "linuxcnc").context
     trace = SimpleNamespace(line_of=lambda line: line, lines_of=lambda lines: lines)
     one, two = Assigned(0, 100, 1.0), Assigned(1, 101, 2.0)
-    assert assignments_differ((one, two), (one, two), trace, context) is None
-    for old, new in (((one, two), (one,)), ((one,), (one, two))):
+    both, first = Assignments.of([one, two]), Assignments.of([one])
+    assert assignments_differ(both, both, trace, context) is None
+    for old, new in ((both, first), (first, both)):
         found = assignments_differ(old, new, trace, context)
         assert found is not None
         assert "#101=2 is missing or too many" in found[0]
+
+
+def test_assignments_in_columns_are_the_same_by_name_and_text() -> None:
+    context = gx.Pipeline.parse("absolute", "linuxcnc").context
+    trace = SimpleNamespace(line_of=lambda line: line, lines_of=lambda lines: lines)
+    made = [Assigned(0, 100, 1.0), Assigned(1, 101, 1.0), Assigned(2, 100, 1.0, "#100=#5")]
+    old = Assignments.of(made)
+    assert [*old] == made
+    lines, values = np.arange(3), np.ones(3)
+    names = (101, ""), (100, "#100=#5"), (100, "")
+    turned = Assignments(lines, names, np.array([2, 0, 1]), values)
+    assert [*turned] == made
+    assert assignments_differ(old, turned, trace, context) is None
+    for which in ([2, 2, 1], [2, 0, 2]):
+        new = Assignments(lines, names, np.array(which), values)
+        assert assignments_differ(old, new, trace, context) is not None
 
 
 def test_a_name_of_a_program_is_in_the_balance(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,7 @@ from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import given_to
 from gcxform.modal.frame_state import FrameState
-from gcxform.modal.line_notes import Assigned, Unknown, WayHome
+from gcxform.modal.line_notes import Assignments, Unknown, WayHome
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
@@ -58,7 +58,7 @@ class Interpreted:
     shape: Ints
     before: State
     value: Floats
-    assigned: tuple[Assigned, ...] = ()
+    assigned: Assignments = Assignments.of(())
     unknown: tuple[Unknown, ...] = ()
     perhaps: Flags | None = None
     loses: Flags = field(default_factory=lambda: np.zeros(0, np.bool_))
@@ -152,7 +152,7 @@ class Interpreter:
         lines = Lines(self.dialect, self.reading, self.state, window, table, *given)
         lines.findings.only = self.only
         lines.refuse_statically()
-        compute(lines)
+        assigned = compute(lines)
         note_prints(lines)
         modes = lines.modes()
         refuse_lost_modes(lines, modes)
@@ -169,7 +169,7 @@ class Interpreter:
             lines.shape,
             before,
             lines.window.value,
-            Records(lines.assigned),
+            assigned,
             Records(lines.unknown),
             lines.perhaps,
             lines.loses_position(),

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from gcxform.dialect.arithmetic import Key
+from gcxform.system.arrays import Floats, Ints
+from gcxform.system.records import of_rows
 from gcxform.toolpath.frames import Frame
+from gcxform.values import dataclass
 
 
 class Assigned(NamedTuple):
@@ -18,6 +24,47 @@ class Assigned(NamedTuple):
     key: Key
     value: float
     text: str = ""
+
+
+@dataclass(frozen=True)
+class Assignments:
+    """What the lines of a window have set, in order, in columns: there may be one in every line.
+
+    line   (n,) of the program, from 0
+    names  the parameters, each with the text of the assignment if only the machine knows the value
+    which  (n,) of the names it is that is set
+    value  (n,)
+    """
+
+    line: Ints
+    names: tuple[tuple[Key, str], ...]
+    which: Ints
+    value: Floats
+
+    @classmethod
+    def of(cls, made: Sequence[Assigned]) -> Assignments:
+        """Return assignments in columns."""
+        numbers: dict[tuple[Key, str], int] = {}
+        which = [numbers.setdefault((each.key, each.text), len(numbers)) for each in made]
+        line, value = [each.line for each in made], [each.value for each in made]
+        columns = np.array(line, np.int64), np.array(which, np.int64), np.array(value, np.float64)
+        return cls(columns[0], tuple(numbers), *columns[1:])
+
+    def __len__(self) -> int:
+        return len(self.line)
+
+    def __iter__(self) -> Iterator[Assigned]:
+        """Yield them one by one."""
+        names = [self.names[number] for number in self.which.tolist()]
+        keys, texts = ([name[part] for name in names] for part in (0, 1))
+        columns = self.line.tolist(), keys, self.value.tolist(), texts
+        return of_rows(Assigned, zip(*columns, strict=True))
+
+    def named_by(self, names: Sequence[tuple[Key, str]]) -> Ints:
+        """Return which (n,) of other names it is that is set; -1 for none."""
+        numbers = {name: number for number, name in enumerate(names)}
+        found = np.array([numbers.get(name, -1) for name in self.names], np.int64)
+        return found[self.which]
 
 
 class Unknown(NamedTuple):

@@ -26,7 +26,7 @@ from gcxform.flow.executed import Executed
 from gcxform.modal.expressions.value import written
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import KINDS, Account, Tally, kind_of, nothing_held
-from gcxform.modal.line_notes import Assigned, WayHome
+from gcxform.modal.line_notes import Assigned, Assignments, WayHome
 from gcxform.modal.meaning.tables import MeaningTable
 from gcxform.modal.program_end import Ending
 from gcxform.proof.trace import Trace
@@ -42,7 +42,7 @@ Wrong = tuple[str, int, int]
 
 
 def assignments_differ(
-    old: tuple[Assigned, ...], new: tuple[Assigned, ...], trace: Trace, context: PassContext
+    old: Assignments, new: Assignments, trace: Trace, context: PassContext
 ) -> Wrong | None:
     """Return what is wrong with the parameters that a window sets; None if nothing is.
 
@@ -50,7 +50,7 @@ def assignments_differ(
     control takes.
     """
     if context.source is not context.target:
-        old = tuple(each for each in old if _lasts(each.key, context))
+        old = Assignments.of([each for each in old if _lasts(each.key, context)])
     known = context.target.flow_rule.arithmetic
     near = 10.0 ** (1 - known.digits) if known is not None else 0.0
     if not (old or new) or _same(old, new, trace, near):
@@ -65,23 +65,20 @@ def assignments_differ(
             return message, before.line, after.line
     if len(old) == len(new):
         return None
-    rest = (old[len(new) :] or new[len(old) :])[0]
+    rest = [*old][len(new)] if len(old) > len(new) else [*new][len(old)]
     line = rest.line if len(old) > len(new) else trace.line_of(rest.line)
     return f"the assignment {_said(rest)} is missing or too many", line, 0
 
 
-def _same(old: tuple[Assigned, ...], new: tuple[Assigned, ...], trace: Trace, near: float) -> bool:
+def _same(old: Assignments, new: Assignments, trace: Trace, near: float) -> bool:
     """Whether assignments with known values are the same, as columns."""
     if len(old) != len(new):
         return False
-    lines, keys, values, texts = zip(*old, strict=True)
-    written, *others = zip(*new, strict=True)
-    before, after = np.array(values), np.array(others[1])
-    close = np.abs(before - after) <= np.abs(before) * near  # nan is not
+    close = np.abs(old.value - new.value) <= np.abs(old.value) * near  # nan is not
     return bool(
-        (keys, texts) == (others[0], others[2])
-        and close.all()
-        and np.array_equal(trace.lines_of(np.array(written)), np.array(lines))
+        close.all()
+        and np.array_equal(new.named_by(old.names), old.which)
+        and np.array_equal(trace.lines_of(new.line), old.line)
     )
 
 

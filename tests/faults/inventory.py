@@ -19,6 +19,16 @@ MUTATIONS = (
         "other values are ignored",
         "if not same or not close:",
     ),
+    _proof(
+        "which parameter is set is not looked at",
+        "        and np.array_equal(new.named_by(old.names), old.which)\n",
+        "",
+    ),
+    _proof(
+        "values of assignments in columns are not looked at",
+        "        close.all()\n        and np",
+        "        np",
+    ),
     _proof("missing assignments are ignored", "if len(old) == len(new):", "if True:"),
     _proof("kinds need not balance", "            if count:", "            if count > 99:"),
     _proof(

@@ -10,6 +10,7 @@ from seeds_kit import DRAWN, shares
 
 import gcxform as gx
 from gcxform.modal.expressions.assignments import _Run
+from gcxform.modal.line_notes import Assignments
 
 COUNT = 2 * DRAWN
 KEYS = ("#1", "#2", "#40", "#100", "#<a>")
@@ -58,9 +59,9 @@ def computed(program: bytes, monkeypatch: pytest.MonkeyPatch) -> Any:
     found: list[Any] = []
     run = _Run.run
 
-    def noted(self: _Run) -> None:
-        run(self)
-        made = [(*each[:2], each.value.hex(), each.text) for each in self.lines.assigned]
+    def noted(self: _Run) -> Assignments:
+        result = run(self)
+        made = [(*each[:2], each.value.hex(), each.text) for each in result]
         found.append((self.value.tobytes(), made, sorted(map(str, self.lines.parameters.items()))))
 
     with monkeypatch.context() as patch:
@@ -76,14 +77,13 @@ def computed(program: bytes, monkeypatch: pytest.MonkeyPatch) -> Any:
 def test_columns_are_worth_what_lines_are(seeds: range, monkeypatch: pytest.MonkeyPatch) -> None:
     straight, done = _Run._straight, [0]
 
-    def counted(self: _Run) -> bool:
+    def counted(self: _Run) -> Assignments | None:
         found = straight(self)
-        done[0] += found
+        done[0] += found is not None
         return found
 
-    def never(self: _Run) -> bool:
+    def never(self: _Run) -> None:
         del self
-        return False
 
     for seed in seeds:
         program = Lines(seed).program()

@@ -36,7 +36,7 @@ from gcxform.modal.expressions.value import (
     written,
 )
 from gcxform.modal.findings import Findings
-from gcxform.modal.line_notes import Assigned, Unknown
+from gcxform.modal.line_notes import Assigned, Assignments, Unknown
 from gcxform.modal.lines import DISTANCES, Lines
 from gcxform.modal.meaning.meaning import Meaning
 from gcxform.syntax.tree import Expression, Item, Mark, Statement, Word
@@ -47,17 +47,20 @@ UNKNOWN = float("nan")
 FEW = 8  # lines for which columns do not pay
 
 
-def compute(lines: Lines) -> None:
+def compute(lines: Lines) -> Assignments:
     """Give the words of the lines their values, and leave the parameters after the last line.
+
+    Returns what the lines have set.
 
     Raises InputError for what has no value.
     """
     undecided = _undecided(lines)
     having = union(np.flatnonzero(lines.flag("computes")), undecided).astype(np.int64)
     if not len(having) or lines.dialect.flow_rule.arithmetic is None:
-        return
-    _Run(lines, having, undecided).run()
+        return Assignments.of(())
+    made = _Run(lines, having, undecided).run()
     lines.findings.raise_if_any()
+    return made
 
 
 class _Run:
@@ -86,14 +89,17 @@ class _Run:
         words = (word.address for _, word in self.lines.table.meanings[shape].expressions)
         return any(rounds_openly(self.lines, address) for address in words)
 
-    def run(self) -> None:
-        """Compute them all, and give the window its values."""
-        if len(self.having) < FEW or not self._straight():
+    def run(self) -> Assignments:
+        """Compute them all, and give the window its values; return what they have set."""
+        made = self._straight() if len(self.having) >= FEW else None
+        if made is None:
             self._in_turn()
+            made = Assignments.of(self.lines.assigned)
         self.lines.window = replace(self.lines.window, value=self.value)
+        return made
 
-    def _straight(self) -> bool:
-        """Compute all lines as columns, if that can be done; return whether it was."""
+    def _straight(self) -> Assignments | None:
+        """Compute all lines as columns, if that can be done; return what they have set."""
         lines, having = self.lines, self.having
         shapes = lines.shape[having]
         used = distinct(shapes).tolist()
@@ -105,17 +111,16 @@ class _Run:
         ]
         keys = {key for _, each in functions if each is not None for key, _ in each.assigned}
         if len(groups) < len(used) or not all(map(self.arithmetic.owns, keys)):
-            return False
+            return None
         straight = Straight(groups, lines.parameters, self.arithmetic, self.value)
         try:
             found = straight.compute(lines.window.first_line)
         except NoColumnError:
-            return False
+            return None
         for places, column in found.words:
             self.value[places] = column
-        lines.assigned += found.assigned
         lines.parameters.update(found.parameters)
-        return True
+        return found.assigned
 
     def _in_turn(self) -> None:
         """Compute lines one by one, and those between which no parameter changes as columns."""

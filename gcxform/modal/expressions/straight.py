@@ -8,7 +8,6 @@ computed before those that read it, so this can be done unless one is computed o
 
 from __future__ import annotations
 
-from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -17,9 +16,8 @@ from gcxform.dialect.arithmetic import Arithmetic, Key
 from gcxform.dialect.null import Null
 from gcxform.modal.expressions.compiled import NO_VALUE, NoColumnError
 from gcxform.modal.expressions.functions import Functions, whole_columns
-from gcxform.modal.line_notes import Assigned
+from gcxform.modal.line_notes import Assignments
 from gcxform.system.arrays import Floats, Ints
-from gcxform.system.records import of_rows
 from gcxform.values import dataclass
 
 
@@ -37,7 +35,7 @@ class Values:
     """What is computed: numbers of words, the assignments in order, and parameters behind them."""
 
     words: list[tuple[Ints, Any]]
-    assigned: list[Assigned]
+    assigned: Assignments
     parameters: dict[Key, float]
 
 
@@ -133,14 +131,12 @@ class Reader:
         return self.straight.read(key, self.lines, default)
 
 
-def _in_order(found: dict[Key, tuple[Ints, Floats, Ints]], first_line: int) -> list[Assigned]:
+def _in_order(found: dict[Key, tuple[Ints, Floats, Ints]], first_line: int) -> Assignments:
     """Return the assignments in the order in which they are made."""
     if not found:
-        return []
-    keys = [*found]
+        return Assignments.of(())
     lines, values, places = (np.concatenate(part) for part in zip(*found.values(), strict=True))
-    which = np.repeat(np.arange(len(keys)), [len(each) for each, _, _ in found.values()])
+    which = np.repeat(np.arange(len(found)), [len(each) for each, _, _ in found.values()])
     order = np.lexsort((places, lines))
-    named = map(keys.__getitem__, which[order].tolist())
-    columns = (lines[order] + first_line).tolist(), named, values[order].tolist(), repeat("")
-    return [*of_rows(Assigned, zip(*columns, strict=False))]
+    names = tuple((key, "") for key in found)
+    return Assignments(lines[order] + first_line, names, which[order], values[order])
