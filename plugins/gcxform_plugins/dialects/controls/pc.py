@@ -14,6 +14,7 @@ page. What is only recalled is refused, or a setting.
 | G28.1 | moves to the switches: refused | refused | refused | refused |
 | G70, G71, G12, G13 | units, pockets: refused | refused | refused | refused |
 | turning, scaling, mirrors | refused | refused | refused | refused |
+| G50 | resets scales to 1 (lists of its codes) | refused | refused | refused |
 | cycles | kept, in blocks with a code of their own | also; G33.1, G33.2 refused | kept | kept |
 | more than six offsets | G59 P (post of Mach4): refused | none | none | none |
 | M6, other M codes | run a macro that may move | as Mach3 | as Mach3 | as Mach3 |
@@ -82,7 +83,8 @@ class Mach3(gx.Dialect):
         **{code: v.frame("non-modal", "home") for code in ("G28", "G30")},
         **{code: v.barrier("non-modal", UNIT) for code in ("G70", "G71")},
         **{code: v.barrier("non-modal", POCKET, "I") for code in ("G12", "G13")},
-        **{code: v.barrier("non-modal", v.TRANSFORM) for code in ("G15", "G16", "G50", "G51")},
+        **{code: v.barrier("non-modal", v.TRANSFORM) for code in ("G15", "G16", "G51")},
+        "G50": v.frame("scaling", "no-scale"),
         **{code: v.barrier("non-modal", v.TRANSFORM, "RI") for code in ("G68", "G69")},
         "G4": v.inert("non-modal", "P"),
         "G95": gx.Code("feed-mode"),
@@ -135,6 +137,7 @@ class Uccnc(Mach3):
         **{name: code for name, code in Mach3.codes.items() if name not in ("G64", "G84")},
         **{code: v.barrier("motion", v.SYNCHRONISED, "KQ") for code in ("G33.1", "G33.2")},
         **{code: v.barrier("non-modal", RECALLED, "XYZABCLP") for code in SHIFTS},
+        "G50": v.barrier("non-modal", v.TRANSFORM),
         **{code: v.barrier("non-modal", v.HOME, "XYZABC") for code in ("G28", "G30")},
         "G4": v.ISO["G4"],
     }
