@@ -43,6 +43,7 @@ from gcxform.dialect.cycle_rule import (
     tap,
 )
 from gcxform.dialect.logic import with_logic
+from gcxform.flow.block_words import At, BlockWords, Change
 from gcxform.machine.formats import ProgramSettings, control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.modal.expressions.value import Evaluator, LocatedError
@@ -76,8 +77,11 @@ __all__ = [
     "SYNCHRONISED",
     "TRANSFORM",
     "Arithmetic",
+    "At",
     "Axis",
+    "BlockWords",
     "Bytes",
+    "Change",
     "Cycle",
     "CycleRule",
     "Evaluator",

@@ -61,8 +61,8 @@ def respelled(
     changes: dict[int, bool] = {}
     whole, translator = source.text.splitlines(), source.translator
     at_stake = _changing(source, whole, blocks) | counting
-    speller = _Spelling(translator, whole)
-    for line, first, stop in _runs(source):
+    speller = Spelling(translator, whole)
+    for line, first, stop in runs(source):
         speller.met(blocks[first:stop])
         if line not in at_stake:
             continue
@@ -76,12 +76,12 @@ def respelled(
             text = _anew(translator, speller, line, made, whole[first:stop])
             text = raw if text is None and not changed else text
         if text != raw and not translator.is_own(line):
-            raise _refusal(source, line, "this line would change, and stands in another program")
+            raise refusal(source, line, "this line would change, and stands in another program")
         if text is None:
-            raise _refusal(source, line, "what this line became cannot be said in its language")
+            raise refusal(source, line, "what this line became cannot be said in its language")
         if new.setdefault(line, text) != text:
             if changes[line]:
-                raise _refusal(source, line, "this line becomes another each time it is executed")
+                raise refusal(source, line, "this line becomes another each time it is executed")
             new[line] = raw
     new = {line: text for line, text in new.items() if text != source.lines[line]}
     several = any("\n" in text for text in new.values())
@@ -112,10 +112,10 @@ def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
     for line in (*kept, *translator.left_behind()):
         for pattern, why in against:
             if pattern.search(source.lines[line]):
-                raise _refusal(source, line, f"this line is kept as it stands, and {why}")
+                raise refusal(source, line, f"this line is kept as it stands, and {why}")
 
 
-class _Spelling:
+class Spelling:
     """What the speller of a language says to the blocks of its programs, one after the other.
 
     It hears of those that were met when it is asked for the last of them, and not before.
@@ -152,7 +152,7 @@ class _Spelling:
 
 
 def _anew(
-    translator: Translator, speller: _Spelling, line: int, made: list[bytes], was: list[bytes]
+    translator: Translator, speller: Spelling, line: int, made: list[bytes], was: list[bytes]
 ) -> str | None:
     """Return a line for what its blocks became; None where it cannot be said.
 
@@ -184,7 +184,7 @@ def _changing(source: Translated, whole: list[bytes], blocks: list[list[bytes]])
     return frozenset(source.origin[blocks_changed].tolist())
 
 
-def _runs(source: Translated) -> Iterator[tuple[int, int, int]]:
+def runs(source: Translated) -> Iterator[tuple[int, int, int]]:
     """Yield each execution of a line that has blocks: the line, its first block, the one behind."""
     count = len(source.visits)
     firsts = np.flatnonzero(np.diff(source.visits, prepend=-1))
@@ -208,7 +208,8 @@ def _joined(given: bytes, new: dict[int, str]) -> bytes:
     return b"".join(found)
 
 
-def _refusal(source: Translated, line: int, message: str) -> SpellingError:
+def refusal(source: Translated, line: int, message: str) -> SpellingError:
+    """Return the error about a line that cannot be written back."""
     text = source.lines[line]
     where = Location(*source.translator.place_of(line), 1, text, max(1, len(text.rstrip())))
     return SpellingError((Diagnostic("GX501", message, where, HINT),))

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import replace
 from itertools import compress
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 
@@ -41,6 +44,11 @@ class Translated(WrittenOut):
         self.translator = translator
         self.text = text
         self.visits = visits
+
+    def frame_of(self, block: int) -> Any:
+        """Return the frame by which words of the line of a block count; None without any."""
+        at = bisect_right(self.translator.framed, block, key=itemgetter(0))
+        return self.translator.framed[at - 1][1] if at else None
 
     def shown(self, where: Location) -> Location:
         """Return a place in the program, all of its line, for one in the blocks."""
@@ -91,11 +99,15 @@ def _run(
     origin: list[int] = []
     visits: list[int] = []
     lost: dict[int, str] = {}
+    frame = None
     try:
         for line, found in translator.run():
             if translator.loses:
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()
+            if translator.frame is not frame:
+                frame = translator.frame
+                translator.framed.append((len(blocks), frame))
             whole = "" not in found
             blocks += found if whole else filter(None, found)
             if whole and len(found) == 1:  # there are many: two ranges take as long again

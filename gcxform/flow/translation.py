@@ -25,9 +25,9 @@ from gcxform.flow import slashes
 from gcxform.flow.annexed import Annexed
 from gcxform.flow.items import Item
 from gcxform.flow.learned import SOON, Learned
-from gcxform.flow.line_shapes import COMMENT, LineShapes, Shape
+from gcxform.flow.line_shapes import COMMENT, Shape
+from gcxform.flow.line_writing import LineWriting
 from gcxform.flow.lookup import Folders, LookupFailedError
-from gcxform.flow.speller import Speller
 from gcxform.flow.stretch import Ahead, Computed
 from gcxform.modal.state import Reading
 from gcxform.system.limits import how_to_raise, limits
@@ -37,7 +37,7 @@ HINT = "let the CAM write plain moves in its place"
 QUICK = 4  # lines that are only translated, in the time of one that is executed
 
 
-class Translator(LineShapes):
+class Translator(LineWriting):
     """Turns the lines of one program into blocks; one is made for each program.
 
     The children of the grammar's `start` are the items of a line. Two kinds are seen to here:
@@ -47,23 +47,14 @@ class Translator(LineShapes):
 
     signs: ClassVar[re.Pattern[bytes]]
     """What programs in this language have, and those of other controls have not."""
-    writes: ClassVar[bool] = False
-    """Whether programs in this language can be written as such again: see `spelled`."""
-    speller: ClassVar[type[Speller] | None] = None
-    """What writes programs for another control in this language; None: they are only read."""
     keyed: ClassVar[Mapping[str, frozenset[str]]] = {}
     """Names of what learnt lines may hang on and change, for the translator ("") and for what it
     has under a name: `key` tells it, `take_key` takes it. Without any nothing is learnt; see
     `learned.py`."""
     fixed: ClassVar[frozenset[str]] = frozenset()
     """Names of what they may hang on and do not change: `key` tells that, or it never changes."""
-    stepped: ClassVar[re.Pattern[str] | None] = None
-    """What stands in each line that `counts`; without it all are asked."""
-    against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
-    """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
-    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS."""
-    kept: ClassVar[str] = ""
-    """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
+    frame: Any = None
+    """By what words of lines become those of blocks, where a program moves its zero."""
 
     def __init__(self, lines: list[str], file: str, dialect: type[Dialect], reading: Reading):
         super().__init__(lines, file, dialect)
@@ -74,6 +65,10 @@ class Translator(LineShapes):
         self.annexed: Annexed | None = None
         self.assumed: dict[str, None] = {}
         """What a line was taken to mean that it does not say, in sentences."""
+        self.anew: dict[str, None] = {}
+        """What holds besides where the program is written anew, and not in its own lines."""
+        self.framed: list[tuple[int, Any]] = []
+        """Each `frame` there was, with the first block behind it."""
         self.loses: set[str] = set()
         """Axes, and F for the feed, that are lost before the next block: it is then not known where
         they are, or what is in force."""
@@ -122,38 +117,9 @@ class Translator(LineShapes):
         """Return the blocks behind the last line."""
         return ()
 
-    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
-        """Return a line that stands for new blocks, in the manner of `line`, which counts from 0.
-
-        None where no such line is known. What is returned is read again, and has to stand for them.
-        """
-        del line, blocks
-        return None
-
-    def replaced(self, line: int, said: Sequence[str]) -> str | None:
-        """Return lines for what a line became, as the speller has `said` it; None without any.
-
-        They are joined by line feeds. Nothing like the line can say it.
-        """
-        del line, said
-        return None
-
-    def renumbered(self, text: str) -> str:
-        """Return a program in which a line became several, with its numbers anew."""
-        return text
-
-    def left_behind(self) -> range:
-        """Return the lines, from 0, that are kept and have no block: nothing read them."""
-        return range(0)
-
-    def counts(self, line: str) -> bool:
-        """Return whether a line has words that count from where an axis stands."""
-        del line
-        return False
-
-    def uncommented(self, text: str) -> str:
-        """Return lines without comments, if one may stand within what is `stepped`."""
-        return text
+    def told_anew(self, sentence: str) -> None:
+        """Tell what holds where the program is written, and not in its own lines."""
+        (self.anew if self.reading.asides else self.assumed)[sentence] = None
 
     # --- files ---
 

@@ -26,6 +26,7 @@ from gcxform.pipeline.file import PipelineSpec, load
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
+from gcxform.pipeline.written_back import told
 from gcxform.plugin.registry import Registry, default_registry
 from gcxform.syntax.source import Source, program_of
 from gcxform.system.limits import in_force
@@ -186,22 +187,13 @@ class Pipeline(Plan):
             (why, *_) = line.diagnostics
             out.lines_in = 0
             try:
-                whole = Run(replace(self, whole=_told(line, source)), source, verify)
+                whole = Run(replace(self, whole=told(line, source)), source, verify)
                 whole.over(out, tell)
             except InputError as other:
-                message = f"{why.hint}; written whole it is refused, too: {_told(other, source)}"
+                message = f"{why.hint}; written whole it is refused, too: {told(other, source)}"
                 raise InputError((replace(why, hint=message),)) from None
             return whole
         return run
-
-
-def _told(error: InputError, source: Source) -> str:
-    """Return what an error says first, with its line."""
-    (first, *_) = error.diagnostics
-    if first.where is None:
-        return first.message
-    file = "" if first.where.file == source.name else f" of {first.where.file}"
-    return f"line {first.where.line}{file}: {first.message}"
 
 
 def _machine(file: Path, registry: Registry) -> Machine:

@@ -6,6 +6,7 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from gcxform.diagnostics import InputError, SpellingError
 from gcxform.emit.emitter import Emitted
 from gcxform.modal.inventory import Account
 from gcxform.modal.state import Reading
@@ -114,6 +115,7 @@ class SpelledOut:
     parts: list[Emitted] = field(default_factory=list)
     why: tuple[str, ...] = ()
     told: tuple[str, ...] = ()
+    back: Folded | None = None
 
     @classmethod
     def of(cls, plan: Plan, given: Source, source: Source, marks: Marks) -> SpelledOut | None:
@@ -130,7 +132,55 @@ class SpelledOut:
         return lines_in(b"".join(self.given.windows()))
 
     def fold(self) -> Folded:
-        """Return the program. Raises InputError for a block that cannot be said."""
+        """Return the program, in its own lines where it can be.
+
+        Raises InputError for a block that cannot be said.
+        """
+        if not self._goes_back:
+            return self._spelled_out()
+        try:
+            self.back = self._in_its_lines()
+        except SpellingError as error:
+            self.why = (f"the whole program: {told(error, self.given)}",)
+            self.back = None
+        return self.back or self._spelled_out()
+
+    @property
+    def _goes_back(self) -> bool:
+        """Whether a program may come back in its own lines: it is written for its own control."""
+        from gcxform.flow.translated import Translated
+        from gcxform.flow.translation import Translator
+
+        own = self.plan.machine_reading.asides and not self.plan.whole
+        if not own or self.plan.structure != "keep" or not isinstance(self.source, Translated):
+            return False
+        return type(self.source.translator).changed_line is not Translator.changed_line
+
+    def _in_its_lines(self) -> Folded:
+        """Return the program in its own lines, compared with what is proved.
+
+        Raises SpellingError where that is not possible.
+        """
+        from gcxform.emit.refolding import refolded
+        from gcxform.flow.translated import Translated
+        from gcxform.proof.refolded import check_refolded
+
+        assert isinstance(self.source, Translated)
+        blocks: list[list[bytes]] = [[] for _ in self.source.origin]
+        for part in self.parts:
+            for line, block in zip(part.text.splitlines(), part.source.tolist(), strict=True):
+                blocks[block].append(line)
+        given = b"".join(self.given.windows())
+        found = refolded(given, self.source, blocks, self._seals, bool(self.marks.read))
+        reading = self.plan.reading_of_output(self.plan.machine_reading)
+        written = Source.of_bytes(found.text, self.given.name)
+        written.folder, written.suffix = self.given.folder, self.given.suffix
+        reading = replace(reading, crosses=True)
+        check_refolded(written, self._blocks, self.source, self.plan.target, reading)
+        return found
+
+    def _spelled_out(self) -> Folded:
+        """Return the program, written anew. Raises InputError for a block that cannot be said."""
         from gcxform.emit.folding import Folded
         from gcxform.emit.spelled_out import spelled_out
 
@@ -148,6 +198,7 @@ class SpelledOut:
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
+        self.told += tuple(getattr(getattr(self.source, "translator", None), "anew", ()))
         own = [self.source.line_of(line + 1) - 1 for line in of]
         return Folded(text + self._others, (*own, *self._lines_of_others), (), ())
 
@@ -187,11 +238,22 @@ class SpelledOut:
 
         del account
         written = Source.of_bytes(folded.text, self.given.name)
-        check_spelled_out(written, self._blocks, self.plan.target, replace(reading, crosses=True))
+        if self.back is None:
+            known = replace(reading, crosses=True)
+            check_spelled_out(written, self._blocks, self.plan.target, known)
         if findings.output_line:
             of = [line for part in self.parts for line in part.source.tolist()]
             line = self.source.line_of(of[findings.output_line - 1] + 1) - 1
             findings.output_line = next((k + 1 for k, n in enumerate(folded.lines) if n == line), 1)
+
+
+def told(error: InputError, source: Source) -> str:
+    """Return what an error says first, with its line."""
+    (first, *_) = error.diagnostics
+    if first.where is None:
+        return first.message
+    file = "" if first.where.file == source.name else f" of {first.where.file}"
+    return f"line {first.where.line}{file}: {first.message}"
 
 
 def structure_of(

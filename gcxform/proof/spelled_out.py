@@ -17,7 +17,7 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, GcxformError, InputError, Location, VerificationError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.speller import ASIDE, Speller
-from gcxform.flow.translated import translated
+from gcxform.flow.translated import Translated, translated
 from gcxform.modal.interpreter import Interpreter
 from gcxform.modal.reader import WindowReader
 from gcxform.modal.state import Reading
@@ -54,8 +54,8 @@ Values = tuple[tuple[str, float], ...]
 
 def check_spelled_out(
     written: Source, blocks: bytes, dialect: type[Dialect], reading: Reading
-) -> None:
-    """Check that what was written is a program of blocks. Raises GcxformError."""
+) -> Translated:
+    """Check that what was written is a program of blocks, and return it. Raises GcxformError."""
     try:
         found = translated(written, dialect, reading)
         now = _path(found.text, dialect, reading, written.name)
@@ -77,6 +77,7 @@ def check_spelled_out(
             raise InputError((Diagnostic("GX501", what, where, OPEN[what]),))
         message = f"what was written is another program: {what}"
         raise VerificationError((Diagnostic("GX601", message, where, HINT),))
+    return found
 
 
 def _path(text: bytes, dialect: type[Dialect], reading: Reading, name: str) -> Toolpath:

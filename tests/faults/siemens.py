@@ -1453,7 +1453,7 @@ MUTATIONS = (
     Mutation(
         "siemens: that R parameters are set no more is not said",
         VARIABLES,
-        "            self.assumed[UNSET] = None\n",
+        "            self.told_anew(UNSET)\n",
         "            pass\n",
         f"{CASES}[dialects/siemens/compensated-with-its-head]",
     ),

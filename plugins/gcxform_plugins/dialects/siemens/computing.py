@@ -155,7 +155,7 @@ class Computing(Deciding):
         except v.NoValueError as why:
             if not why.lost:
                 raise self.refusal(why.code, why.message, None, why.hint) from None
-            self.assumed[UNTOLD] = None
+            self.told_anew(UNTOLD)
             return []
 
     def _plainly(self, items: Sequence[gx.Item]) -> list[str]:

@@ -19,6 +19,8 @@ from gcxform_plugins.dialects.siemens.place import LINEAR, PlaceError
 Row = tuple[Decimal, Decimal, Decimal]
 ZERO, ONE = Decimal(0), Decimal(1)
 NEAR = Decimal("1e-12")
+FINE = Decimal("1e-6")
+"""mm: as fine are words written in a frame that turns."""
 UNITS: tuple[Row, Row, Row] = ((ONE, ZERO, ZERO), (ZERO, ONE, ZERO), (ZERO, ZERO, ONE))
 ACROSS = {"XY": "Z", "ZX": "Y", "YZ": "X"}
 PLAIN = "let the CAM write positions without it"
@@ -88,6 +90,30 @@ def _inverse(m: tuple[Row, Row, Row]) -> list[list[Decimal]]:
     ]
     whole = sum((m[0][k] * cofactors[k][0] for k in range(3)), ZERO)
     return [[value / whole for value in row] for row in cofactors]
+
+
+def words_inside(
+    frame: Frame,
+    named: Mapping[str, Decimal],
+    before: Mapping[str, Decimal],
+    steps: bool,
+    bends: bool,
+) -> dict[str, Decimal] | None:
+    """Return words, as they are outside, as they count in a frame; None where that is not known.
+
+    `before` is where axes stand outside. Where a frame turns, one word becomes several.
+    """
+    if frame.matrix == UNITS:
+        zero = dict(zip(LINEAR, frame.shift, strict=True))
+        return {axis: v if steps else v - zero[axis] for axis, v in named.items()}
+    point = [named.get(axis, ZERO if steps else before.get(axis)) for axis in LINEAR]
+    known = [value for value in point if value is not None]
+    if bends or len(known) < len(point):
+        return None
+    found = (Frame(frame.matrix) if steps else frame).inside(known)
+    rows = _inverse(frame.matrix)
+    moved = [any(rows[k][LINEAR.index(axis)] for axis in named) for k in range(3)]
+    return {axis: v.quantize(FINE) for axis, v, m in zip(LINEAR, found, moved, strict=True) if m}
 
 
 def about(axis: str, degrees: Decimal) -> Frame:

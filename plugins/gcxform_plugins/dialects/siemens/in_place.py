@@ -6,9 +6,15 @@ import re
 from collections.abc import Sequence
 
 import gcxform as gx
+from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
+from gcxform_plugins.dialects.siemens.computing import COMPUTED
+from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import code
+from gcxform_plugins.dialects.siemens.units import HEADER
+from gcxform_plugins.dialects.siemens.words_moved import line_moved, words_in
 
 STEPPED = re.compile(  # it begins with letters that may be looked for one by one
     r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
@@ -57,6 +63,32 @@ class InPlace(Learning):
             return (item.numbers[0].lstrip("0") or "0") in CODES
         plain = item.kind == "word" and item.name in PLAIN
         return plain or (item.kind in KINDS and item.name in PLACES)
+
+    def changed_line(self, line: int, change: v.Change) -> str | None:
+        """Return a line whose block became another; None where that is not known."""
+        text = self.lines[line]
+        bare = code(text, True).rstrip()
+        computed: Sequence[gx.Item] = ()
+        if any(item.kind in COMPUTED for item in self.items(line)):
+            computed = [*words_of(self.tree_of(text), text)]
+        made = line_moved(bare, words_in(bare, computed), change)
+        return None if made is None else made + text[len(bare) :]
+
+    def inside(
+        self, frame: Frame, named: v.At, before: v.At, steps: bool, bends: bool
+    ) -> v.At | None:
+        """Return words as they count in a frame; None where that hangs on what is not known."""
+        return words_inside(frame, named, before, steps, bends)
+
+    def margins(self) -> tuple[int, int]:
+        """Return the first line that is no comment and no header, and the one behind the last."""
+        says = (k for k in self.main if code(self.lines[k]).strip())
+        first = next((k for k in says if not HEADER.fullmatch(self.lines[k])), self.main.stop)
+        return first, self.main.stop
+
+    def leaves(self) -> dict[str, str]:
+        """Return the R parameters: other programs may read them."""
+        return {f"R{number}": repr(value) for number, value in self.r.items()}
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""

@@ -110,10 +110,11 @@ class Units(Calls):
         for text, chosen in (
             (IDLE if anew or self.reading.stays else IDLE.replace(*LEFT), self._others(True)),
             (DATA, self._others(False)),
-            (CALLED, self._others(True, called=True) if anew else []),
         ):
             if chosen:
                 self.assumed[text.format(", ".join(chosen))] = None
+        if anew and (called := self._others(True, called=True)):
+            self.told_anew(CALLED.format(", ".join(called)))
         if self.left_out:
             self.assumed[LEFT_OUT.format(", ".join(sorted(self.left_out)))] = None
         return iter(())

@@ -159,7 +159,7 @@ class Variables(Blocks):
     def tell_of_parameters(self) -> None:
         """Say that R parameters, which outlive the program, are set no more."""
         if self.reading.asides:
-            self.assumed[UNSET] = None
+            self.told_anew(UNSET)
 
     def _fill_alike(self, cell: Cell, index: Node | None, node: Node) -> None:
         """Set elements of an array to one value: to its end, or as many as REP says."""

@@ -1,0 +1,96 @@
+"""What a language is asked for where its programs are written again, in their own lines.
+
+`spelled` and `replaced` say what a line becomes by passes that keep positions
+(`gcxform/emit/respelling.py`), `changed_line` by those that turn them into others
+(`gcxform/emit/refolding.py`).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from gcxform.flow.block_words import At, Change
+from gcxform.flow.line_shapes import LineShapes
+from gcxform.flow.speller import Speller
+
+SLASH = re.compile(r"[ \t]*(?:[N:]?[ \t]*[0-9]+[ \t]*)?/", re.IGNORECASE)
+
+
+class LineWriting(LineShapes):
+    """What stands in the place of lines of one program. Without more of it none is written so."""
+
+    writes: ClassVar[bool] = False
+    """Whether programs in this language can be written as such again: see `spelled`."""
+    speller: ClassVar[type[Speller] | None] = None
+    """What writes programs for another control in this language; None: they are only read."""
+    stepped: ClassVar[re.Pattern[str] | None] = None
+    """What stands in each line that `counts`; without it all are asked."""
+    against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
+    """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
+    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS."""
+    kept: ClassVar[str] = ""
+    """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
+
+    def spelled(self, line: int, blocks: Sequence[str]) -> str | None:
+        """Return a line that stands for new blocks, in the manner of `line`, which counts from 0.
+
+        None where no such line is known. What is returned is read again, and has to stand for them.
+        """
+        del line, blocks
+        return None
+
+    def replaced(self, line: int, said: Sequence[str]) -> str | None:
+        """Return lines for what a line became, as the speller has `said` it; None without any.
+
+        They are joined by line feeds. Nothing like the line can say it.
+        """
+        del line, said
+        return None
+
+    def changed_line(self, line: int, change: Change) -> str | None:
+        """Return a line, which counts from 0, whose block became another, in its own form.
+
+        None where it cannot be said so. A language without this has its programs written anew
+        where positions become others.
+        """
+        del line, change
+        return None
+
+    def inside(self, frame: Any, named: At, before: At, steps: bool, bends: bool) -> At | None:
+        """Return words of axes, by letter, as they count in a frame; None where that is not known.
+
+        `before` is where axes stand outside of it; `bends`: they are those of an arc.
+        """
+        del frame, before, steps, bends
+        return named
+
+    def margins(self) -> tuple[int, int]:
+        """Return the line, from 0, in front of which stamps go, and that of the seal."""
+        return 0, len(self.lines)
+
+    def leaves(self) -> Any:
+        """Return what the program leaves to those behind it, or that call it, as a value."""
+        return None
+
+    def slashed(self) -> list[int]:
+        """Return the lines, from 0, on which a switch of the control decides."""
+        return [k for k, text in enumerate(self.lines) if SLASH.match(text)]
+
+    def renumbered(self, text: str) -> str:
+        """Return a program in which a line became several, with its numbers anew."""
+        return text
+
+    def left_behind(self) -> range:
+        """Return the lines, from 0, that are kept and have no block: nothing read them."""
+        return range(0)
+
+    def counts(self, line: str) -> bool:
+        """Return whether a line has words that count from where an axis stands."""
+        del line
+        return False
+
+    def uncommented(self, text: str) -> str:
+        """Return lines without comments, if one may stand within what is `stepped`."""
+        return text

@@ -1,0 +1,91 @@
+"""Faults of programs that come back in their own lines, by what is read and compared, and cases."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+REFOLDING = "gcxform/emit/refolding.py"
+PROOF = "gcxform/proof/refolded.py"
+BLOCKS = "gcxform/flow/block_words.py"
+FRAMES = "plugins/gcxform_plugins/dialects/siemens/frames.py"
+WORDS = "plugins/gcxform_plugins/dialects/siemens/words_moved.py"
+COMPARED = "tests/test_refolded.py::test_what_came_back_is_read_and_compared"
+CASES = "tests/test_corpus.py::test_case[dialects/siemens/own-lines"
+
+
+def _own(name: str, file: str, old: str, new: str, tests: str) -> Mutation:
+    return Mutation(f"own lines: {name}", file, old, new, tests)
+
+
+MUTATIONS = (
+    _own(
+        "comments are not compared",
+        PROOF,
+        "_comments(blocks) != _comments(found.text)",
+        "_comments(blocks) is None",
+        COMPARED,
+    ),
+    _own(
+        "what is left to others is not compared",
+        PROOF,
+        "found.translator.leaves() != source.translator.leaves()",
+        "found.translator.leaves() is source",
+        COMPARED,
+    ),
+    _own(
+        "words count outside of the shift",
+        FRAMES,
+        "v if steps else v - zero[axis]",
+        "v if steps else v + zero[axis]",
+        f"{CASES}]",
+    ),
+    _own(
+        "steps are shifted",
+        FRAMES,
+        "{axis: v if steps else v - zero[axis]",
+        "{axis: v - zero[axis]",
+        f"{CASES}-steps]",
+    ),
+    _own(
+        "steps in a turn count from its zero",
+        FRAMES,
+        "(Frame(frame.matrix) if steps else frame).inside(known)",
+        "frame.inside(known)",
+        f"{CASES}-turned]",
+    ),
+    _own(
+        "a step that stays a step is not one any more",
+        WORDS,
+        'self._number(word, new, "IC" if word.way == "IC" else "")',
+        'self._number(word, new, "")',
+        f"{CASES}-steps]",
+    ),
+    _own(
+        "words that an arc had stay in its lines",
+        WORDS,
+        "self.straightened = self.was.bends and not self._same_arc()",
+        "self.straightened = False",
+        f"{CASES}-cut]",
+    ),
+    _own(
+        "words beside IC are positions",
+        WORDS,
+        '("IC" if self.change.steps else "AC") if ways else ""',
+        '""',
+        f"{CASES}-steps]",
+    ),
+    _own(
+        "lines that count from where an axis stands stay",
+        REFOLDING,
+        "was == made and line not in self.counting",
+        "was == made",
+        f"{CASES}-steps]",
+    ),
+    _own(
+        "where axes stand is not added up",
+        BLOCKS,
+        'return said[-1] == "G91" if said else before',
+        'return said[-1] == "G91" if said else False',
+        f"{CASES}-steps]",
+    ),
+)
