@@ -19,14 +19,13 @@ from gcxform.syntax.source import Source
 PROGRAM = """; PART
 N10 G710 G17 G90 G54 G94
 MSG("ONE")
-R1=60
+R1=60 R3=1
 N20 G0 X10 Y10 Z50 ; THERE
 N30 TRANS X5
 N40 G1 X=R1 Y40 F100
 N50 TRANS
 N60 M30
 """
-WHOLE = "the whole program: "
 
 
 def compensating(folder: Path, language: str = "siemens", before: str = "") -> gx.Pipeline:
@@ -88,7 +87,8 @@ def written_blocks(text: str) -> tuple[gx.Pipeline, Translated]:
 WRONG = [
     ("X10 Y10", "X10 Y11", "an end"),
     ("; THERE", "; HERE", "comments"),
-    ("R1=60", "R1=60 R2=1", "another value"),
+    ("R3=1", "R3=2", "another value"),
+    ("R3=1", "R3=1 R2=1", "another value"),
     ("TRANS X5", "TRANS X6", "an end"),
     ('MSG("ONE")', 'MSG("TWO")', "goes along"),
     ("N50 TRANS", "N50 TRANS Y=", "would not read"),
@@ -104,3 +104,47 @@ def test_what_came_back_is_read_and_compared(right: str, wrong: str, why: str) -
     other = Source.of_bytes(PROGRAM.replace(right, wrong).encode())
     with pytest.raises(SpellingError, match=why):
         check_refolded(other, source.text, source, pipeline.target, reading)
+
+
+CALLING = """G710 G17 G90 G54 G94 G0 X0 Y0 Z0
+R1=1
+HOLE
+X10 Y10
+HOLE
+M30
+"""
+HOLES = ("G0 X=R1\nR1=R1+1\nRET\n", "G0 Z2\nR1=R1+1\nRET\n", "TRANS X=DD\nX5\nTRANS\nRET\n")
+
+
+def test_a_call_that_cannot_stay_is_written_out_alone(tmp_path: Path) -> None:
+    pipeline, main = compensating(tmp_path), tmp_path / "MAIN.MPF"
+    main.write_text(CALLING)
+    for hole, why in (
+        (HOLES[0], ["line 5, and what it calls: line 1 of HOLE.SPF: "]),
+        (HOLES[1], []),
+        (f"DEF REAL DD=5\n{HOLES[2]}", ["the whole program: line 2 of "]),
+    ):
+        (tmp_path / "HOLE.SPF").write_text(hole)
+        found = pipeline.run(main)
+        said = found.certificate.written_out
+        assert len(said) == len(why), said
+        assert all(one.startswith(other) for one, other in zip(said, why, strict=True)), said
+        assert found.certificate.verified
+
+
+def test_steps_of_a_loop_are_the_same_where_nothing_changes_them(tmp_path: Path) -> None:
+    text = "G710 G17 G90 G54 G94 G0 X0 Y0 Z0\nR1=0\nROUND: G91 X1\nR1=R1+1\nIF R1<5 GOTOB ROUND"
+    found = compensating(tmp_path).run(f"{text}\nG90 Y50\nM30\n".encode())
+    assert found.text.decode().splitlines()[1:6] == text.splitlines()[:5]
+    assert found.text.decode().splitlines()[6] == "G90 Y50 X5.005"
+
+
+def test_a_line_that_no_words_can_say_is_written_out(tmp_path: Path) -> None:
+    (tmp_path / "z.toml").write_text('format = 1\nkind = "skew"\n[squareness]\nA0Z = 1e-3\n')
+    chain = f"volumetric model={tmp_path}/z.toml part-origin=0,0,0"
+    text = "G710 G17 G90 G54 G94 G0 X0 Y0 Z50\nF100\nCYCLE81(10,0,2,-8,) ; HOLE\nG0 X1 Z20\nM30\n"
+    found = gx.Pipeline.parse(chain, "siemens").run(text.encode())
+    (why,) = found.certificate.written_out
+    assert why.startswith("line 3, and what it calls: line 3: what this line became")
+    assert b"CYCLE81" not in found.text
+    assert b"; HOLE" in found.text

@@ -121,10 +121,12 @@ class Spelling:
     It hears of those that were met when it is asked for the last of them, and not before.
     """
 
-    def __init__(self, translator: Translator, blocks: list[bytes]) -> None:
+    def __init__(self, translator: Translator, blocks: list[bytes], asides: bool = False) -> None:
         replaces = type(translator).replaced is not Translator.replaced
         kind = translator.speller if replaces else None
         self.speller = None if kind is None else kind("", inch_first(blocks, False))
+        if self.speller is not None:
+            self.speller.asides = asides
         self.waiting: list[list[list[bytes]]] = []
 
     def met(self, blocks: list[list[bytes]]) -> None:
@@ -132,15 +134,15 @@ class Spelling:
         if self.speller is not None:
             self.waiting.append(blocks)
 
-    def said(self) -> list[str]:
-        """Return lines for the last blocks; nothing where the language has no words for them."""
-        found: list[str] = []
+    def said(self) -> list[str] | None:
+        """Return lines for the last blocks; None where the language has no words for them."""
+        found: list[str] | None = None
         for blocks in self.waiting:
             found = self._said(_ends_off(blocks))
         self.waiting.clear()
         return found
 
-    def _said(self, blocks: list[bytes]) -> list[str]:
+    def _said(self, blocks: list[bytes]) -> list[str] | None:
         assert self.speller is not None
         try:
             return [
@@ -148,7 +150,7 @@ class Spelling:
             ]
         except UnspeakableError:
             self.speller.lose()
-            return []
+            return None
 
 
 def _anew(
@@ -161,7 +163,7 @@ def _anew(
     text = translator.spelled(line, [each.decode("latin-1") for each in made])
     if text is None and len(made) > 1 and made[1:] == was[1:]:
         text = translator.spelled(line, [made[0].decode("latin-1")])
-    said = speller.said() if text is None else []
+    said = speller.said() if text is None else None
     return translator.replaced(line, said) if said else text
 
 

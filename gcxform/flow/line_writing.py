@@ -66,13 +66,25 @@ class LineWriting(LineShapes):
         del frame, before, steps, bends
         return named
 
+    def loops(self) -> list[tuple[int, int]]:
+        """Return the first and the last line, from 0, of each loop that its last line ends."""
+        return []
+
+    def sets(self, line: int) -> list[str] | None:
+        """Return what a line sets besides its blocks, as lines that say it; None where none can."""
+        del line
+        return []
+
     def margins(self) -> tuple[int, int]:
         """Return the line, from 0, in front of which stamps go, and that of the seal."""
         return 0, len(self.lines)
 
-    def leaves(self) -> Any:
-        """Return what the program leaves to those behind it, or that call it, as a value."""
-        return None
+    def leaves(self) -> Mapping[str, object]:
+        """Return what the program leaves to those behind it, or that call it, by name.
+
+        None is what only the control knows.
+        """
+        return {}
 
     def slashed(self) -> list[int]:
         """Return the lines, from 0, on which a switch of the control decides."""

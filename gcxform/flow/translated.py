@@ -45,10 +45,21 @@ class Translated(WrittenOut):
         self.text = text
         self.visits = visits
 
-    def frame_of(self, block: int) -> Any:
-        """Return the frame by which words of the line of a block count; None without any."""
-        at = bisect_right(self.translator.framed, block, key=itemgetter(0))
+    def frame_at(self, visit: int) -> Any:
+        """Return the frame by which words of a line count in an execution; None without any."""
+        at = bisect_right(self.translator.framed, visit, key=itemgetter(0))
         return self.translator.framed[at - 1][1] if at else None
+
+    def executed_lines(self) -> Ints:
+        """Return the line of each execution (visits,), those without blocks too; the first is 1.
+
+        In place 0 there is none.
+        """
+        starts = [visit for visit, _ in self.translator.jumps]
+        counts = np.diff([*starts, self.translator.visit])
+        firsts = np.array([line for _, line in self.translator.jumps], np.int64)
+        steps = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        return np.concatenate([[-1], np.repeat(firsts, counts) + steps])
 
     def shown(self, where: Location) -> Location:
         """Return a place in the program, all of its line, for one in the blocks."""
@@ -99,15 +110,11 @@ def _run(
     origin: list[int] = []
     visits: list[int] = []
     lost: dict[int, str] = {}
-    frame = None
     try:
         for line, found in translator.run():
             if translator.loses:
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()
-            if translator.frame is not frame:
-                frame = translator.frame
-                translator.framed.append((len(blocks), frame))
             whole = "" not in found
             blocks += found if whole else filter(None, found)
             if whole and len(found) == 1:  # there are many: two ranges take as long again

@@ -67,8 +67,11 @@ class Translator(LineWriting):
         """What a line was taken to mean that it does not say, in sentences."""
         self.anew: dict[str, None] = {}
         """What holds besides where the program is written anew, and not in its own lines."""
+        self.jumps: list[tuple[int, int]] = []
+        """Each execution of a line that does not stand behind the one before, with that line."""
+        self._behind = -1
         self.framed: list[tuple[int, Any]] = []
-        """Each `frame` there was, with the first block behind it."""
+        """Each `frame` there was, with the first execution of a line behind it."""
         self.loses: set[str] = set()
         """Axes, and F for the feed, that are lost before the next block: it is then not known where
         they are, or what is in force."""
@@ -167,11 +170,14 @@ class Translator(LineWriting):
                 self.at_end()
                 continue
             first, learned = self.at, self._learned
+            self._arrive()
             if learned is not None and learned.row >= SOON and (known := self._stretch(learned)):
                 left -= len(known)
+                self._behind = self.at
                 yield first, known
                 continue
-            self.line, self.at = self.at, self.at + 1
+            self.line = self.at
+            self.at = self._behind = self.at + 1
             self.visit += 1
             left -= 1
             if left < 0:
@@ -181,6 +187,7 @@ class Translator(LineWriting):
             if shape.template and self.plainly:
                 blocks = [shape.template % (*numbers,), *self._plain_behind()]
                 left -= len(blocks) - 1
+                self._behind = self.at
                 yield first, blocks
                 continue
             if shape.routine:
@@ -189,6 +196,7 @@ class Translator(LineWriting):
                 self._pass(len(blocks) - 1)
                 yield first, blocks
                 self._pass(1)
+                self._behind = self.at
                 shape, numbers = self.shape(self.line)
             for block in self._learnt(shape, numbers):
                 yield self.line, (block,)
@@ -198,6 +206,13 @@ class Translator(LineWriting):
         self.visit += 1
         for block in self.closing():
             yield self.line, (block,)
+
+    def _arrive(self) -> None:
+        """Note where the walk is not behind the line before, or in another frame."""
+        if self.at != self._behind:
+            self.jumps.append((self.visit + 1, self.at))
+        if not self.framed or self.framed[-1][1] is not self.frame:
+            self.framed.append((self.visit + 1, self.frame))
 
     def _stretch(self, learned: Learned) -> list[str]:
         """Return the blocks of the lines from here on that are known, one for each; go on to them.

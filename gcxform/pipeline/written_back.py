@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from gcxform.flow.translated import Translated
 
 
+COUNTED = "{} is not what a loop that is written out made of it: nothing may read it behind the end"
+
+
 @dataclass
 class WrittenBack:
     """Gathers what is written for the blocks of one program, and spells it at its end."""
@@ -140,6 +143,7 @@ class SpelledOut:
             return self._spelled_out()
         try:
             self.back = self._in_its_lines()
+            self.why = self.back.why
         except SpellingError as error:
             self.why = (f"the whole program: {told(error, self.given)}",)
             self.back = None
@@ -176,7 +180,8 @@ class SpelledOut:
         written = Source.of_bytes(found.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
         reading = replace(reading, crosses=True)
-        check_refolded(written, self._blocks, self.source, self.plan.target, reading)
+        lost = check_refolded(written, self._blocks, self.source, self.plan.target, reading)
+        self.told = (COUNTED.format(", ".join(lost)),) if lost else ()
         return found
 
     def _spelled_out(self) -> Folded:

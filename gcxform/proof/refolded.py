@@ -16,15 +16,17 @@ from gcxform.proof.spelled_out import check_spelled_out
 from gcxform.stamps.comment import without_lines
 from gcxform.syntax.source import Source
 
+LEFT = "what the program leaves to others would be another value"
 HINT = "the program is written anew"
 
 
 def check_refolded(
     written: Source, blocks: bytes, source: Translated, dialect: type[Dialect], reading: Reading
-) -> None:
+) -> list[str]:
     """Check that a program says blocks that are proved, and keeps what `source` has besides.
 
-    Raises SpellingError: then it has to be written another way.
+    Return the names of values that only the control knew behind the program, and that it does not
+    set any more. Raises SpellingError: then it has to be written another way.
     """
     try:
         found = check_spelled_out(written, blocks, dialect, reading)
@@ -34,10 +36,15 @@ def check_refolded(
     wrong = ""
     if _comments(blocks) != _comments(found.text):
         wrong = "comments in their own lines would be others"
-    if found.translator.leaves() != source.translator.leaves():
-        wrong = "what the program leaves to others would be another value"
+    left, now = source.translator.leaves(), found.translator.leaves()
+    if any(now.get(name) != value for name, value in left.items() if value is not None):
+        wrong = LEFT
+    if not now.keys() <= left.keys():
+        wrong = LEFT
     if wrong:
         raise SpellingError((Diagnostic("GX501", wrong, Location(written.name), HINT),))
+    lost = (name for name, value in left.items() if value is None)
+    return sorted(name for name in lost if now.get(name, left) is not None)
 
 
 def _comments(blocks: bytes) -> list[str]:

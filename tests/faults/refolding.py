@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from faults.mutation import Mutation
 
-REFOLDING = "gcxform/emit/refolding.py"
+OWN_LINES = "gcxform/emit/own_lines.py"
 PROOF = "gcxform/proof/refolded.py"
 BLOCKS = "gcxform/flow/block_words.py"
 FRAMES = "plugins/gcxform_plugins/dialects/siemens/frames.py"
+UNROLLING = "gcxform/emit/unrolling.py"
+TRANSLATION = "gcxform/flow/translation.py"
+SETTING = "plugins/gcxform_plugins/dialects/siemens/setting.py"
 WORDS = "plugins/gcxform_plugins/dialects/siemens/words_moved.py"
 COMPARED = "tests/test_refolded.py::test_what_came_back_is_read_and_compared"
 CASES = "tests/test_corpus.py::test_case[dialects/siemens/own-lines"
@@ -28,8 +31,8 @@ MUTATIONS = (
     _own(
         "what is left to others is not compared",
         PROOF,
-        "found.translator.leaves() != source.translator.leaves()",
-        "found.translator.leaves() is source",
+        "now.get(name) != value for name",
+        "False for name",
         COMPARED,
     ),
     _own(
@@ -76,7 +79,7 @@ MUTATIONS = (
     ),
     _own(
         "lines that count from where an axis stands stay",
-        REFOLDING,
+        OWN_LINES,
         "was == made and line not in self.counting",
         "was == made",
         f"{CASES}-steps]",
@@ -87,5 +90,56 @@ MUTATIONS = (
         'return said[-1] == "G91" if said else before',
         'return said[-1] == "G91" if said else False',
         f"{CASES}-steps]",
+    ),
+    _own(
+        "a loop that its last line ends is written out without its head",
+        UNROLLING,
+        "if each[0] <= last and first <= each[1]",
+        "if False",
+        f"{CASES}-loop]",
+    ),
+    _own(
+        "what is called behind a line is not written out with it",
+        UNROLLING,
+        "self.own[behind] - 1 if behind",
+        "self.own[behind - 1] if behind",
+        f"{CASES}-called]",
+    ),
+    _own(
+        "another call than that of the line is written out",
+        UNROLLING,
+        'np.searchsorted(self.own, visit, "right") - 1',
+        'np.searchsorted(self.own, visit, "right") - 2',
+        f"{CASES}-called]",
+    ),
+    _own(
+        "a jump is noted a line late",
+        TRANSLATION,
+        "self.jumps.append((self.visit + 1, self.at))",
+        "self.jumps.append((self.visit + 1, self.at + 1))",
+        f"{CASES}-loop]",
+    ),
+    _own(
+        "what is written out sets nothing",
+        SETTING,
+        'return [" ".join(said)] if said else []',
+        "return []",
+        f"{CASES}-loop]",
+    ),
+    _own(
+        "variables of a call are set by who called",
+        SETTING,
+        """    if not own:
+        said""",
+        """    if False:
+        said""",
+        f"{CASES}-called]",
+    ),
+    _own(
+        "nobody is told what a loop counted",
+        PROOF,
+        "if now.get(name, left) is not None",
+        "if now.get(name) is not None",
+        f"{CASES}-loop]",
     ),
 )

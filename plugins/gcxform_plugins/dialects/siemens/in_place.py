@@ -11,8 +11,10 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
 from gcxform_plugins.dialects.siemens.computing import COMPUTED
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
 from gcxform_plugins.dialects.siemens.learning import Learning
+from gcxform_plugins.dialects.siemens.line import FRAMES
+from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, said_of
 from gcxform_plugins.dialects.siemens.spelling import spelled
-from gcxform_plugins.dialects.siemens.structure import code
+from gcxform_plugins.dialects.siemens.structure import Structure, StructureError, code
 from gcxform_plugins.dialects.siemens.units import HEADER
 from gcxform_plugins.dialects.siemens.words_moved import line_moved, words_in
 
@@ -86,9 +88,31 @@ class InPlace(Learning):
         first = next((k for k in says if not HEADER.fullmatch(self.lines[k])), self.main.stop)
         return first, self.main.stop
 
-    def leaves(self) -> dict[str, str]:
+    def loops(self) -> list[tuple[int, int]]:
+        """Return the loops of the main program."""
+        try:
+            parts = Structure(self.lines, self.main.start, self.main.stop).parts
+        except StructureError:
+            return []
+        return [(part.first, part.last) for part in parts if part.kind != "IF"]
+
+    def sets(self, line: int) -> list[str] | None:
+        """Return the assignments of a line, or the frame that it sets.
+
+        None where variables are in them that the program has not, or that it defines there.
+        """
+        items, own = self.items(line), self.is_own(line)
+        flow = next((item.name for item in items if item.kind == "flow"), "")
+        if flow:
+            return None if own and DEFINES.match(flow) else []
+        if not any(item.kind in SETTING or item.name in FRAMES for item in items):
+            return []
+        text = code(self.lines[line])
+        return said_of(text, [*words_of(self.tree_of(text), text)], own)
+
+    def leaves(self) -> dict[str, object]:
         """Return the R parameters: other programs may read them."""
-        return {f"R{number}": repr(value) for number, value in self.r.items()}
+        return {f"R{number}": value for number, value in self.r.items()}
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""

@@ -1,0 +1,164 @@
+"""What lines of a program become where positions became others, one execution after another.
+
+A line whose blocks say what they said stands as it did, byte for byte; in another one words are
+changed where they stand, as they count in the frame that is in force there. Pieces of a move stand
+behind each other, the first with the head and the comment of its line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import field
+
+from gcxform.emit.respelling import Spelling, counting_lines
+from gcxform.flow.block_words import LINEAR, At, BlockWords, Change, as_text, block_of
+from gcxform.flow.translated import Translated
+from gcxform.stamps.comment import is_stamp
+from gcxform.values import dataclass
+
+Lines = tuple[str, ...]
+
+
+@dataclass
+class _Standing:
+    """What is in force in blocks, one after the other: steps or positions, and where axes stand."""
+
+    steps: bool = False
+    at: At = field(default_factory=dict)
+
+    def take(self, block: BlockWords) -> None:
+        """Go on behind a block."""
+        self.steps = block.steps(self.steps)
+        if block.shifts:
+            self.at.clear()
+        for letter, value in block.positions:
+            before = self.at.get(letter)
+            if block.in_machine or (self.steps and before is None):
+                self.at.pop(letter, None)
+            else:
+                self.at[letter] = value + before if self.steps and before is not None else value
+
+
+class OwnLines:
+    """Says what each execution of a line becomes; it has to be asked in their order.
+
+    `whole` are the blocks as they were read, `written` the lines that each of them became.
+    """
+
+    def __init__(
+        self, source: Translated, whole: Sequence[str], written: Sequence[Sequence[str]]
+    ) -> None:
+        self.source, self.translator = source, source.translator
+        self.whole, self.written = whole, written
+        self.speller = Spelling(self.translator, source.text.splitlines(), asides=True)
+        self.counting = counting_lines(self.translator)
+        self.before, self.now = _Standing(), _Standing()
+
+    def spelled(self, line: int, first: int, stop: int) -> Lines | None:
+        """Return the lines for an execution of a line, with the blocks from `first` up to `stop`.
+
+        None where it cannot be said in its place.
+        """
+        was, made = self._blocks(first, stop)
+        frame = self.source.frame_at(int(self.source.visits[first]))
+        raw = self.source.lines[line]
+        if is_stamp(raw) or (was == made and line not in self.counting):
+            self._pass(was, made)
+            return (raw,)
+        return self._changed(line, frame, was, made) if made else None
+
+    def written_out(self, first: int, stop: int) -> Lines | None:
+        """Return blocks as lines by themselves, in their frame; None where they cannot be said."""
+        frame = self.source.frame_at(int(self.source.visits[first]))
+        was, made = self._blocks(first, stop)
+        for block in was:
+            self.before.take(block)
+        said = self._said(frame, made)
+        return None if said is None else tuple(said)
+
+    def _blocks(self, first: int, stop: int) -> tuple[list[BlockWords], list[BlockWords]]:
+        was = [block_of(each) for each in self.whole[first:stop]]
+        made = [block_of(each) for lines in self.written[first:stop] for each in lines]
+        return was, made
+
+    def _pass(self, was: Sequence[BlockWords], made: Sequence[BlockWords]) -> None:
+        """Go on behind blocks that stay."""
+        for block in was:
+            self.before.take(block)
+        for block in made:
+            self.now.take(block)
+        self.speller.met([[each.text.encode("latin-1")] for each in made])
+
+    def _changed(
+        self, line: int, frame: object, was: Sequence[BlockWords], made: Sequence[BlockWords]
+    ) -> Lines | None:
+        """Return the lines for a line that became another; None where it cannot be said.
+
+        The blocks before and behind the one that has changed stay with the line.
+        """
+        ahead = 0
+        while ahead < min(len(was), len(made)) - 1 and was[ahead] == made[ahead]:
+            ahead += 1
+        behind = 0
+        while (
+            behind < min(len(was), len(made)) - ahead - 1 and was[-1 - behind] == made[-1 - behind]
+        ):
+            behind += 1
+        if len(was) - ahead - behind != 1 or (behind and len(made) - ahead - behind > 1):
+            return self._anew(line, frame, was, made)
+        self._pass(was[:ahead], made[:ahead])
+        last = len(made) - behind
+        found = self._in_place(line, frame, was[ahead], made[ahead:last])
+        self._pass(was[ahead + 1 :], made[last:])
+        return found
+
+    def _in_place(
+        self, line: int, frame: object, was: BlockWords, made: Sequence[BlockWords]
+    ) -> Lines | None:
+        """Return a line with its words changed where they stand, and the pieces behind it."""
+        old = self._inside(frame, was, self.before)
+        new = self._inside(frame, made[0], self.now)
+        text = None
+        if old is not None and new is not None:
+            text = self.translator.changed_line(
+                line, Change(old, new, self.before.steps, self.now.steps)
+            )
+        if text is None:
+            return None
+        self.speller.met([[as_text(new)]])
+        return self._pieces(frame, text, made[1:])
+
+    def _anew(
+        self, line: int, frame: object, was: Sequence[BlockWords], made: Sequence[BlockWords]
+    ) -> Lines | None:
+        """Return lines that are said anew, with the head and the comment of a line."""
+        for block in was:
+            self.before.take(block)
+        said = self._said(frame, made)
+        text = self.translator.replaced(line, said) if said else None
+        return None if text is None else tuple(text.split("\n"))
+
+    def _pieces(self, frame: object, text: str, made: Sequence[BlockWords]) -> Lines | None:
+        """Return a line and what is said behind it."""
+        if not made:
+            return (text,)
+        said = self._said(frame, made)
+        return (text, *said) if said else None
+
+    def _said(self, frame: object, made: Sequence[BlockWords]) -> list[str] | None:
+        """Return blocks in the words of the language; None where one cannot be said."""
+        inside = [self._inside(frame, block, self.now) for block in made]
+        if any(block is None for block in inside):
+            return None
+        self.speller.met([[block.text.encode("latin-1")] for block in inside if block is not None])
+        return self.speller.said()
+
+    def _inside(self, frame: object, block: BlockWords, standing: _Standing) -> BlockWords | None:
+        """Return a block as its words count in a frame, and go on; None where that is not known."""
+        steps, before = block.steps(standing.steps), dict(standing.at)
+        standing.take(block)
+        named = {letter: value for letter, value in block.positions if letter in LINEAR}
+        if frame is None or not (named or block.bends) or block.in_machine:
+            return block
+        inside = self.translator.inside(frame, named, before, steps, block.bends)
+        return None if inside is None else block.at(inside)
