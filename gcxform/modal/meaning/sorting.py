@@ -378,7 +378,8 @@ def _words(shape: Shape, dialect: type[Dialect], meaning: Meaning) -> Iterator[R
     meaning.axes = "".join(a for a in dialect.axes if a in slots)
     meaning.centres = "".join(a for a in CENTRE if a in slots)
     if meaning.dwell and meaning.axes and set(dialect.point_rule.dwell) & set(dialect.axes):
-        yield Refusal("GX203", 0, len(shape.block.text), "a dwell and axis words in one block")
+        message = "a dwell and axis words in one block"
+        yield Refusal("GX203", 0, len(shape.block.text), message, "write two blocks")
     if name := drops_move(meaning, dialect):
         message = f"beside {name} this control leaves the move of a block out"
         yield Refusal("GX202", 0, len(shape.block.text), message, "write two blocks")
