@@ -9,7 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import field
+from decimal import Decimal
 
+from gcxform.emit.alike_lines import AlikeLines
 from gcxform.emit.respelling import Spelling, counting_lines
 from gcxform.flow.block_words import LINEAR, At, BlockWords, Change, as_text, block_of
 from gcxform.flow.translated import Translated
@@ -53,14 +55,50 @@ class OwnLines:
         self.speller = Spelling(self.translator, source.text.splitlines(), asides=True)
         self.counting = counting_lines(self.translator)
         self.before, self.now = _Standing(), _Standing()
+        self.alike = AlikeLines()
+        self.frames: dict[int, tuple[object, bool]] = {}
 
     def spelled(self, line: int, first: int, stop: int) -> Lines | None:
         """Return the lines for an execution of a line, with the blocks from `first` up to `stop`.
 
         None where it cannot be said in its place.
         """
-        was, made = self._blocks(first, stop)
         frame = self.source.frame_at(int(self.source.visits[first]))
+        raw = self.source.lines[line]
+        alone = stop - first == 1 and len(self.written[first]) == 1
+        texts = raw, self.whole[first], self.written[first][0] if alone else ""
+        quick = alone and self._counts_alike(line, frame)
+        if quick and (known := self._known(*texts)) is not None:
+            return (known,)
+        found = self._worded(line, first, stop, frame)
+        if quick and found is not None and len(found) == 1:
+            self.alike.learn(*texts, found[0])
+        return found
+
+    def _counts_alike(self, line: int, frame: object) -> bool:
+        """Whether words of a line are those of its block, and lead to places."""
+        if self.before.steps or self.now.steps or line in self.counting:
+            return False
+        if id(frame) not in self.frames:
+            named = {axis: Decimal(k) for k, axis in enumerate("XYZ")}
+            inside = self.translator.inside(frame, named, {}, False, False)
+            self.frames[id(frame)] = frame, frame is None or inside == named
+        return self.frames[id(frame)][1]
+
+    def _known(self, raw: str, was: str, now: str) -> str | None:
+        """Return a line that is like one before; None for another."""
+        if is_stamp(raw):
+            return None
+        found = raw if was == now and self.alike.passes(was) else None
+        found = self.alike.spelled(raw, was, now) if found is None else found
+        if found is not None:
+            self.speller.met([[now.encode("latin-1")]])
+        return found
+
+    def _worded(self, line: int, first: int, stop: int, frame: object) -> Lines | None:
+        """Return the lines for an execution of a line, word by word."""
+        self.alike.settle(self.before.at, self.now.at)
+        was, made = self._blocks(first, stop)
         raw = self.source.lines[line]
         if is_stamp(raw) or (was == made and line not in self.counting):
             self._pass(was, made)
@@ -70,6 +108,7 @@ class OwnLines:
     def written_out(self, first: int, stop: int) -> Lines | None:
         """Return blocks as lines by themselves, in their frame; None where they cannot be said."""
         frame = self.source.frame_at(int(self.source.visits[first]))
+        self.alike.settle(self.before.at, self.now.at)
         was, made = self._blocks(first, stop)
         for block in was:
             self.before.take(block)

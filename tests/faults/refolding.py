@@ -5,6 +5,8 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 OWN_LINES = "gcxform/emit/own_lines.py"
+ALIKE = "gcxform/emit/alike_lines.py"
+ALIKE_TESTS = "tests/test_alike_lines.py"
 PROOF = "gcxform/proof/refolded.py"
 BLOCKS = "gcxform/flow/block_words.py"
 FRAMES = "plugins/gcxform_plugins/dialects/siemens/frames.py"
@@ -21,6 +23,27 @@ def _own(name: str, file: str, old: str, new: str, tests: str) -> Mutation:
 
 
 MUTATIONS = (
+    _own(
+        "of alike lines words are written anew that say the same",
+        ALIKE,
+        "letter in said and _same(before.get(letter), new)",
+        "letter in said and False",
+        f"{ALIKE_TESTS}::test_a_form_is_filled_and_told",
+    ),
+    _own(
+        "where axes stand behind alike lines is not known",
+        ALIKE,
+        "AXES & words.keys()",
+        "frozenset[str]()",
+        f"{ALIKE_TESTS}::test_a_form_is_filled_and_told",
+    ),
+    _own(
+        "lines in a shifted frame are alike as well",
+        OWN_LINES,
+        "frame, frame is None or inside == named",
+        "frame, True",
+        f"{ALIKE_TESTS}::test_what_is_alike_is_spelled_as_word_by_word",
+    ),
     _own(
         "comments are not compared",
         PROOF,
