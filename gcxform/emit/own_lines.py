@@ -7,6 +7,7 @@ behind each other, the first with the head and the comment of its line.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import field
 from decimal import Decimal
@@ -18,6 +19,8 @@ from gcxform.flow.translated import Translated
 from gcxform.stamps.comment import is_stamp
 from gcxform.values import dataclass
 
+DISTANCES, MOTIONS = frozenset(("G90", "G91")), frozenset(("G0", "G1", "G2", "G3"))
+NOTHING = frozenset[str]()
 Lines = tuple[str, ...]
 
 
@@ -44,7 +47,9 @@ class _Standing:
 class OwnLines:
     """Says what each execution of a line becomes; it has to be asked in their order.
 
-    `whole` are the blocks as they were read, `written` the lines that each of them became.
+    `whole` are the blocks as they were read, `written` the lines that each of them became. `owed`
+    are codes that a line has to say where its block does, also where it had not said them: what
+    was said before, in the place of others, may have left another one in force.
     """
 
     def __init__(
@@ -57,6 +62,7 @@ class OwnLines:
         self.before, self.now = _Standing(), _Standing()
         self.alike = AlikeLines()
         self.frames: dict[int, tuple[object, bool]] = {}
+        self.owed = NOTHING
 
     def spelled(self, line: int, first: int, stop: int) -> Lines | None:
         """Return the lines for an execution of a line, with the blocks from `first` up to `stop`.
@@ -67,7 +73,8 @@ class OwnLines:
         raw = self.source.lines[line]
         alone = stop - first == 1 and len(self.written[first]) == 1
         texts = raw, self.whole[first], self.written[first][0] if alone else ""
-        quick = alone and self._counts_alike(line, frame)
+        says = bool(self.owed) and "G" in texts[2]
+        quick = alone and not says and self._counts_alike(line, frame)
         if quick and (known := self._known(*texts)) is not None:
             return (known,)
         found = self._worded(line, first, stop, frame)
@@ -100,10 +107,23 @@ class OwnLines:
         self.alike.settle(self.before.at, self.now.at)
         was, made = self._blocks(first, stop)
         raw = self.source.lines[line]
-        if is_stamp(raw) or (was == made and line not in self.counting):
+        due = self._settle(raw, made)
+        if is_stamp(raw) or (was == made and line not in self.counting and not due):
             self._pass(was, made)
             return (raw,)
-        return self._changed(line, frame, was, made) if made else None
+        return self._changed(line, frame, was, made, due) if made else None
+
+    def _settle(self, raw: str, made: Sequence[BlockWords]) -> frozenset[str]:
+        """Return the codes of blocks that are owed, and which the line does not say.
+
+        One that it says ends what is owed; another may be there for this block alone.
+        """
+        owed = self.owed & {code for block in made for code in block.codes}
+        said = {code for code in owed if re.search(rf"(?<!\w)G0*{code[1:]}(?![0-9.])", raw, re.I)}
+        for group in (DISTANCES, MOTIONS):
+            if said & group:
+                self.owed -= group
+        return owed - said
 
     def written_out(self, first: int, stop: int) -> Lines | None:
         """Return blocks as lines by themselves, in their frame; None where they cannot be said."""
@@ -113,6 +133,7 @@ class OwnLines:
         for block in was:
             self.before.take(block)
         said = self._said(frame, made)
+        self.owed = DISTANCES | MOTIONS
         return None if said is None else tuple(said)
 
     def _blocks(self, first: int, stop: int) -> tuple[list[BlockWords], list[BlockWords]]:
@@ -129,11 +150,17 @@ class OwnLines:
         self.speller.met([[each.text.encode("latin-1")] for each in made])
 
     def _changed(
-        self, line: int, frame: object, was: Sequence[BlockWords], made: Sequence[BlockWords]
+        self,
+        line: int,
+        frame: object,
+        was: Sequence[BlockWords],
+        made: Sequence[BlockWords],
+        due: frozenset[str],
     ) -> Lines | None:
         """Return the lines for a line that became another; None where it cannot be said.
 
-        The blocks before and behind the one that has changed stay with the line.
+        It has to say what is `due`. The blocks before and behind the one that has changed stay
+        with the line.
         """
         ahead = 0
         while ahead < min(len(was), len(made)) - 1 and was[ahead] == made[ahead]:
@@ -143,25 +170,31 @@ class OwnLines:
             behind < min(len(was), len(made)) - ahead - 1 and was[-1 - behind] == made[-1 - behind]
         ):
             behind += 1
+        if not due <= {*made[ahead].codes}:
+            return None
         if len(was) - ahead - behind != 1 or (behind and len(made) - ahead - behind > 1):
             return self._anew(line, frame, was, made)
         self._pass(was[:ahead], made[:ahead])
         last = len(made) - behind
-        found = self._in_place(line, frame, was[ahead], made[ahead:last])
+        found = self._in_place(line, frame, was[ahead], made[ahead:last], due)
         self._pass(was[ahead + 1 :], made[last:])
         return found
 
     def _in_place(
-        self, line: int, frame: object, was: BlockWords, made: Sequence[BlockWords]
+        self,
+        line: int,
+        frame: object,
+        was: BlockWords,
+        made: Sequence[BlockWords],
+        due: frozenset[str],
     ) -> Lines | None:
         """Return a line with its words changed where they stand, and the pieces behind it."""
         old = self._inside(frame, was, self.before)
         new = self._inside(frame, made[0], self.now)
         text = None
         if old is not None and new is not None:
-            text = self.translator.changed_line(
-                line, Change(old, new, self.before.steps, self.now.steps)
-            )
+            change = Change(old, new, self.before.steps, self.now.steps, due)
+            text = self.translator.changed_line(line, change)
         if text is None:
             return None
         self.speller.met([[as_text(new)]])
@@ -181,6 +214,9 @@ class OwnLines:
         """Return a line and what is said behind it."""
         if not made:
             return (text,)
+        if self.now.steps:  # by IC alone, perhaps
+            made = [made[0].saying("G91"), *made[1:]]
+            self.owed |= DISTANCES
         said = self._said(frame, made)
         return (text, *said) if said else None
 

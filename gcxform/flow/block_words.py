@@ -66,19 +66,24 @@ class BlockWords:
         rest = [(letter, value) for letter, value in self.words if letter not in LINEAR]
         return BlockWords(self.codes, (*inside.items(), *rest), self.comments)
 
+    def saying(self, code: str) -> BlockWords:
+        """Return the block with a code."""
+        return BlockWords(tuple(sorted({*self.codes, code})), self.words, self.comments)
+
 
 @dataclass(frozen=True)
 class Change:
     """One block that became another, both as their words count where the line stands.
 
     `stepped`, `steps`: whether the words of the first, and of the other, count from where the axes
-    stand.
+    stand. `due` are codes of the other that have to be said in any case.
     """
 
     was: BlockWords
     now: BlockWords
     stepped: bool
     steps: bool
+    due: frozenset[str] = frozenset()
 
 
 def block_of(text: str) -> BlockWords:

@@ -165,4 +165,18 @@ MUTATIONS = (
         "if now.get(name) is not None",
         f"{CASES}-loop]",
     ),
+    _own(
+        "a distance that what is written out left in force stays",
+        OWN_LINES,
+        "self.owed = DISTANCES | MOTIONS",
+        "self.owed = MOTIONS",
+        f"{CASES}-owed]",
+    ),
+    _own(
+        "a distance that pieces of a step left in force stays",
+        OWN_LINES,
+        "self.owed |= DISTANCES",
+        "self.owed |= NOTHING",
+        f"{CASES}-owed]",
+    ),
 )

@@ -190,9 +190,10 @@ class _Edits:
         there = {word.code for word in self.words} - (ARCS if self.straightened else set())
         self._refuse(bool(there & MOTIONS - {*self.now.codes, *self.was.codes}))
         self._refuse(bool(there & MOTIONS and {*codes} & MOTIONS - there))
-        had = {*self.was.codes} - (MOTIONS if self.straightened else set())
-        if "G91" in there and not self.change.steps:
-            had |= {"G90"}
+        had = {*self.was.codes} - (MOTIONS if self.straightened else set()) - self.change.due
+        ways = [word.way for word in self.words if word.name in AXES]
+        if (ways and all(ways)) or ("G91" in there and not self.change.steps):
+            had |= DISTANCES
         lacking = [code for code in codes if code not in there | had]
         if lacking:
             head = HEAD.match(self.text)
