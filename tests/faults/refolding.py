@@ -150,6 +150,20 @@ MUTATIONS = (
         f"{CASES}-loop]",
     ),
     _own(
+        "a loop that is written out counts nothing",
+        SETTING,
+        'return [f"{name}={first}" if begins else f"{name}={name}+1"]',
+        "return []",
+        f"{CASES}-counter]",
+    ),
+    _own(
+        "R by an index is set by no call",
+        SETTING,
+        '"R[0-9]|R[ \\t]*\\["',
+        '"R[0-9]"',
+        f"{CASES}-counter]",
+    ),
+    _own(
         "variables of a call are set by who called",
         SETTING,
         """    if not own:

@@ -12,7 +12,7 @@ from gcxform_plugins.dialects.siemens.computing import COMPUTED
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES
-from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, said_of
+from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, counted, said_of
 from gcxform_plugins.dialects.siemens.spelling import spelled
 from gcxform_plugins.dialects.siemens.structure import Structure, StructureError, code
 from gcxform_plugins.dialects.siemens.units import HEADER
@@ -104,11 +104,19 @@ class InPlace(Learning):
         items, own = self.items(line), self.is_own(line)
         flow = next((item.name for item in items if item.kind == "flow"), "")
         if flow:
-            return None if own and DEFINES.match(flow) else []
+            return None if own and DEFINES.match(flow) else self._counts_on(line, own)
         if not any(item.kind in SETTING or item.name in FRAMES for item in items):
             return []
         text = code(self.lines[line])
         return said_of(text, [*words_of(self.tree_of(text), text)], own)
+
+    def _counts_on(self, line: int, own: bool) -> list[str] | None:
+        """Return how FOR or ENDFOR counts, as lines; None where that cannot be said."""
+        parts = (each.at.get(line) for each in self._structures.values())
+        part = next((each for each in parts if each is not None), None)
+        if part is None or part.kind != "FOR":
+            return []
+        return counted(code(self.lines[part.first]), line == part.first, own)
 
     def leaves(self) -> dict[str, object]:
         """Return the R parameters: other programs may read them."""
