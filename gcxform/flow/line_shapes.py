@@ -238,6 +238,11 @@ class LineShapes(ABC):
         shape, numbers = self.shape(self.line, text)
         return shape.items(numbers)
 
+    def placed_items(self, line: int) -> list[Item]:
+        """Return the items of a line with their own places; those of `items` are of its shape."""
+        numbers, parts = self._parsed(line)
+        return [part.item(numbers) for part in parts]
+
     def grammar_named(self, package: str, name: str) -> TreeShapes:
         """Return what parses by another grammar of the language, as `grammar` names one."""
         return TreeShapes(_grammar(package, name))

@@ -164,6 +164,13 @@ MUTATIONS = (
         f"{CASES}-counter]",
     ),
     _own(
+        "words without blanks are where the first of their shape has them",
+        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        "computed = self.placed_items(line)",
+        "computed = self.items(line)",
+        f"{CASES}-glued]",
+    ),
+    _own(
         "variables of a call are set by who called",
         SETTING,
         """    if not own:

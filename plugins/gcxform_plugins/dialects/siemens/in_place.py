@@ -27,6 +27,8 @@ HEAD = re.compile(
     re.IGNORECASE,
 )
 NUMBER = re.compile(r"N[0-9]+[ \t]+")
+GLUED = re.compile(r"[0-9.][A-Z]", re.IGNORECASE)
+"""Words without a blank between: only the grammar tells them from names with a number in them."""
 CODES = frozenset(("0", "1", "2", "3", "9", "17", "18", "19", "40", "60", "64", "90", "91", "94"))
 """G codes of which blocks say all that there is: not how near to a corner (G642), nor F (G71)."""
 PLAIN = frozenset("NFMS")
@@ -73,6 +75,8 @@ class InPlace(Learning):
         computed: Sequence[gx.Item] = ()
         if any(item.kind in COMPUTED for item in self.items(line)):
             computed = [*words_of(self.tree_of(text), text)]
+        elif GLUED.search(code(text)):
+            computed = self.placed_items(line)
         made = line_moved(bare, words_in(bare, computed), change)
         return None if made is None else made + text[len(bare) :]
 

@@ -33,6 +33,8 @@ AXES = frozenset("XYZABC")
 LENGTHS = {"I": "I", "J": "J", "K": "K", "R": "CR="}
 OF_ARCS = frozenset(("CR", "AR", "TURN", "I1", "J1", "K1", "CIP", "I", "J", "K"))
 ARCS = frozenset(("G2", "G3"))
+PLAIN = frozenset(("word", "value", "function", "command"))
+"""Kinds of items that may be words which do not compute."""
 MOTIONS = frozenset(("G0", "G1", "G2", "G3"))
 DISTANCES = frozenset(("G90", "G91"))
 
@@ -57,7 +59,10 @@ class Word:
 
 
 def words_in(text: str, computed: Sequence[gx.Item] = ()) -> list[Word]:
-    """Return the words of a line without its comment; `computed` are those of one that computes."""
+    """Return the words of a line without its comment.
+
+    `computed` are the items of one that computes, or in which words stand without blanks.
+    """
     found = []
     if computed:
         for item in computed:
@@ -65,7 +70,7 @@ def words_in(text: str, computed: Sequence[gx.Item] = ()) -> list[Word]:
             word = COMPUTED.match(part)
             if item.kind == "expression" and word is not None:
                 found.append(Word(word["name"].upper(), (word["way"] or "").upper(), item.place))
-            elif item.kind == "word" and (plain := WORD.fullmatch(part.rstrip())):
+            elif item.kind in PLAIN and (plain := WORD.fullmatch(part.rstrip())):
                 found.append(_word(plain, item.place[0]))
         return found
     bare = TEXT.sub(lambda m: '"' * len(m[0]), text)
