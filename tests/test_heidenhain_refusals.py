@@ -120,7 +120,7 @@ REFUSED = {
     "the same length": (["TOOL DEF 2 L+20.0 R+1"], None),
     "another radius": (["TOOL DEF 2 L+20 R+1.5"], "GX210"),
     "no feed of a tool": (["TOOL CALL 2 Z S5", "L X+5 FAUTO"], "GX204"),
-    "an unknown M function": (["M25"], "GX201"),
+    "an M function of the builder": (["M25"], "GX210"),
     "feeds of rotary axes": (["L C+5 M116"], "GX210"),
     "a retraction": (["L M140 MB50"], "GX210"),
     "fewer angles": (["L M94 C"], "GX210"),

@@ -8,6 +8,7 @@
 | G43 H | the length of a tool of the table | post |
 | G28, G30, G53 | home, and one block in the machine | post |
 | G10 L2, G52, G92 | shift the zero | post |
+| G50 | resets scales, in the heads of posts | post |
 | cycles | stay as they are; where they end is not known | post |
 | G12, G13, G28.1, G31, G68, G70, G71 and the like | move or scale in ways of their own | recalled |
 | M98, M99 | subprograms behind M30: refused | post |
@@ -22,7 +23,7 @@ from gcxform import vocabulary as v
 SETTING = "a setting decides (post)"
 OWN = "it does what no post shows"
 CYCLES = (73, 76, 81, 82, 83, 84, 85, 86, 88, 89)
-OTHER = ("G12", "G13", "G15", "G16", "G28.1", "G31", "G50", "G51", "G68", "G69", "G70", "G71")
+OTHER = ("G12", "G13", "G15", "G16", "G28.1", "G31", "G51", "G68", "G69", "G70", "G71")
 SHIFTS = {"G10": ("set-work", "XYZABCLP"), "G52": ("local", "XYZABC"), "G92": ("preset", "XYZABC")}
 
 
@@ -42,6 +43,7 @@ class Mach(gx.Dialect):
         **dict.fromkeys(("G90.1", "G91.1"), gx.Code("arc-distance")),
         "G4": v.inert("non-modal", "P"),
         "G43": v.frame("tool-length", "length", "H"),
+        "G50": v.frame("scaling", "no-scale"),
         "G53": v.frame("non-modal", "machine"),
         "G61": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),
