@@ -39,7 +39,9 @@ def drawn(random: Random, count: int) -> str:
             text = text.replace("F-", "F").replace("F+", "F").replace("S-", "S").replace("S+", "S")
         code = random.choice(("", "", "G0 ", "G1 ")) if not few else ""
         number = random.choice(("", f"N{k} ", f"N{k}  ")) if not few else ""
-        lines.append(number + code + text + random.choice(("", "", f" ; LINE {k}", "  ")))
+        lines.append(
+            number + code + text + random.choice(("", "", f" ; LINE {k}", " ; X9 Y-8", "  "))
+        )
     return "\n".join([*lines, "M30", ""])
 
 
@@ -80,3 +82,12 @@ def test_a_form_is_filled_and_told() -> None:
     known.settle(before, now)
     assert before == {"X": 7, "Z": 9}
     assert now == {"X": 7, "Y": Decimal("-2.5")}
+
+
+def test_words_of_a_comment_are_none() -> None:
+    known = AlikeLines()
+    known.learn("X5 ; X9", "X5 (X9)", "X5 Y3. (X9)", "X5 Y3 ; X9")
+    assert known.spelled("X7 ; X8", "X7 (X8)", "X7 Y3. (X8)") == "X7 Y3 ; X8"
+    before, now = dict[str, Decimal](), dict[str, Decimal]()
+    known.settle(before, now)
+    assert (before, now) == ({"X": 7}, {"X": 7, "Y": 3})

@@ -10,17 +10,16 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 
-from gcxform.flow.block_words import AXES, At, BlockWords, block_of
+from gcxform.flow.block_words import AXES, DISTANCES, At, BlockWords, block_of
+from gcxform.flow.speller import COMMENT, WORD
 from gcxform.values import dataclass
 
 VALUE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 NUMBERS = re.compile(rf"(?<![GMgm0-9.]){VALUE}")
 """Numbers of all words but codes."""
-WORDS = re.compile(rf"([A-Z])({VALUE})")
 PLAIN = re.compile(rf"(?:[ \t]*[NGXYZABCFMS]{VALUE})+(?=[ \t]*(?:;|\Z))", re.IGNORECASE)
 """Words that a line has as its block has them."""
 STAYING = frozenset("NS")
-WAYS = frozenset(("G90", "G91"))
 Key = tuple[str, str, str]
 Numbers = dict[str, str]
 
@@ -50,7 +49,7 @@ class AlikeLines:
         form = self.forms.get(_key(raw, was, now))
         if form is None:
             return None
-        said, before, behind = _words(raw.upper()), _words(was), _words(now)
+        said, before, behind = _said(raw), _words(was), _words(now)
         self.was |= before
         self.now |= behind
         return _filled(form, said, before, behind) + _rest(raw)
@@ -78,7 +77,7 @@ class AlikeLines:
         if not plain or not found.endswith(rest):
             return
         form = _form_of(found[: len(found) - len(rest)])
-        if _filled(form, _words(raw.upper()), _words(was), _words(now)) + rest == found:
+        if _filled(form, _said(raw), _words(was), _words(now)) + rest == found:
             self.forms[key] = form
 
     def settle(self, before: At, behind: At) -> None:
@@ -92,13 +91,19 @@ def _key(raw: str, was: str, now: str) -> Key:
     return NUMBERS.sub("%", raw), NUMBERS.sub("%", was), NUMBERS.sub("%", now)
 
 
-def _words(text: str) -> Numbers:
-    return dict(WORDS.findall(text))
+def _words(block: str) -> Numbers:
+    return dict(WORD.findall(COMMENT.sub("", block)))
+
+
+def _said(raw: str) -> Numbers:
+    """Return the words of a line; those in its comment are none."""
+    words = PLAIN.match(raw)
+    return _words(words[0].upper()) if words else {}
 
 
 def _free(block: BlockWords) -> bool:
     """Whether the words of a block are places, and those behind it lead where they did before."""
-    return not (block.shifts or block.in_machine or block.bends or WAYS & {*block.codes})
+    return not (block.shifts or block.in_machine or block.bends or DISTANCES & {*block.codes})
 
 
 def _rest(raw: str) -> str:

@@ -14,12 +14,20 @@ from decimal import Decimal
 
 from gcxform.emit.alike_lines import AlikeLines
 from gcxform.emit.respelling import Spelling, counting_lines
-from gcxform.flow.block_words import LINEAR, At, BlockWords, Change, as_text, block_of
+from gcxform.flow.block_words import (
+    DISTANCES,
+    LINEAR,
+    MOTIONS,
+    At,
+    BlockWords,
+    Change,
+    as_text,
+    block_of,
+)
 from gcxform.flow.translated import Translated
 from gcxform.stamps.comment import is_stamp
 from gcxform.values import dataclass
 
-DISTANCES, MOTIONS = frozenset(("G90", "G91")), frozenset(("G0", "G1", "G2", "G3"))
 NOTHING = frozenset[str]()
 Lines = tuple[str, ...]
 

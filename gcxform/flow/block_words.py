@@ -14,6 +14,8 @@ LINEAR = frozenset("XYZ")
 AXES = LINEAR | frozenset("ABCUVW")
 BENDS = frozenset("IJKR")
 ARCS = frozenset(("G2", "G3"))
+MOTIONS = frozenset(("G0", "G1")) | ARCS
+DISTANCES = frozenset(("G90", "G91"))
 SHIFTS = re.compile(r"G(?:5[4-9](?:\.[0-9]+)?|4[39]|52|92|10|2[0-1]|68|69|28|30)|M6|M128|M129")
 """Codes behind which the same words lead elsewhere, or axes are where no word says."""
 At = dict[str, Decimal]
