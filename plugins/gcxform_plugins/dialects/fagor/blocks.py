@@ -9,6 +9,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables as tables
 from gcxform_plugins.dialects.fagor.places import Places, code_of
 from gcxform_plugins.dialects.fagor.structure import code
+from gcxform_plugins.dialects.shared.own_functions import INERT, OF_BUILDER
 from gcxform_plugins.dialects.shared.tips_left import goes_along
 
 PLANES = frozenset({"G17", "G18", "G19"})
@@ -22,7 +23,6 @@ IN_MACHINE = frozenset(("", "G0", "G1", "G90", "M3", "M4", "M5", "M7", "M8", "M9
 WHOLE = re.compile(r"[0-9]+\Z")
 INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
 SHIFTS = "another work offset or tool length: whether it makes up for the difference is not certain"
-TOLD = "tell the axis absolute before"
 
 
 class Blocks(gx.Translator):
@@ -162,7 +162,7 @@ class Blocks(gx.Translator):
             self.refuse(f"{code} is not resolved: {tables.REFUSED[code]}", item)
         own = tables.own_m(code)
         if own is not None and own not in self.reading.inert_m:
-            self.refuse(f"{code}: {tables.OWN_M}", item, tables.SAY_OWN_M.format(own))
+            self.refuse(f"{code}: {OF_BUILDER}", item, INERT.format(own))
         if code and own is None and code not in tables.CODES | tables.M_CODES:
             raise self.refusal("GX201", f"what {code} does on a fagor is not known here", item)
         words = tables.AXES if item.kind == "incremental" else tables.WORDS
@@ -210,7 +210,7 @@ class Blocks(gx.Translator):
         self.work = work
         for item in items if self.shifted else ():
             if item.name in self.shifted and (item.kind == "incremental" or self.incremental):
-                self.refuse(f"a step of {item.name} behind {SHIFTS}", item, TOLD)
+                self.refuse(f"a step of {item.name} behind {SHIFTS}", item, tables.TOLD)
             self.shifted.discard(item.name)
         self.shifted |= {"Z"} if length else set()
 

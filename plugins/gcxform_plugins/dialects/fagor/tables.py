@@ -25,10 +25,7 @@ M_CODES = frozenset(f"M{code}" for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30))
 OF_BLOCKS = frozenset(("M128", "M129", "M9000", "M9001"))
 """M codes that say among the blocks what a Fagor has other words for."""
 ALONE = "write it in a block of its own"
-OWN_M = "what it does is up to the machine's builder"
-SAY_OWN_M = (
-    "inert-m = [{}] in [control] of the machine file, if it moves nothing; else use `absolute`"
-)
+TOLD = "tell the axis absolute before"
 WORDS = PLAIN_WORDS | {"T", "D"}
 LACKING = {
     "P": "parameters are computed by the control",

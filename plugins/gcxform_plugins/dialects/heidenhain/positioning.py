@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.words import ROTARY, Words
+from gcxform_plugins.dialects.shared.own_functions import INERT, OF_BUILDER
 
 AT_START = {13: ("M3", "M8"), 14: ("M4", "M8")}
 """What M functions become that act at the start of their block, where that is not themselves."""
@@ -30,8 +31,6 @@ MOVES_ZERO = frozenset({115, 145})
 """Those of them behind which coordinates are others, if what they cancel has been."""
 FIRST_OF_CONTROL = 89  # M functions below are those of the machine's builder
 POINT_OF_M92 = "X, Y, Z = ... in [home.M92] of the machine file say where, in its coordinates"
-OF_BUILDER = "what it does is up to the machine's builder"
-INERT = "inert-m = [{}] in [control] of the machine file, if it moves nothing; else use `absolute`"
 WHY = {
     89: "it calls a cycle behind each block",
     92: "it counts from a point of the machine that its builder has set",
