@@ -115,13 +115,22 @@ def measures(takes: str) -> Code:
     return Code("non-modal", Effect.CALL, takes, act="unknown")
 
 
-def cuts(takes: str, group: str = "non-modal") -> Code:
+def bores(axes: str) -> Code:
+    """Return a code that moves along the tool by itself, to and fro: it is kept.
+
+    Behind it the axes that its block names are where that says.
+    """
+    return Code("non-modal", Effect.CALL, axes, act=f"at {axes}")
+
+
+def cuts(takes: str, group: str = "non-modal", ends: str = "unknown") -> Code:
     """Return a code that cuts in a way of its own within its block: it is kept, places are lost.
 
     Where positions are compensated it is refused, for its own would not be. In group "motion" it
-    leaves a motion code in force of which nothing is known.
+    leaves a motion code in force of which nothing is known. `ends`: "at XYZ", where its block says
+    of these axes where they are behind it.
     """
-    return Code(group, Effect.CALL, takes, "it cuts in a way of its own", act="unknown")
+    return Code(group, Effect.CALL, takes, "it cuts in a way of its own", act=ends)
 
 
 ISO: Mapping[str, Code] = {

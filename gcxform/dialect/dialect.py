@@ -141,3 +141,8 @@ class Dialect:
     def load_grammar(cls) -> Grammar:
         """Return the dialect's grammar, built once."""
         return load(*cls.grammar)
+
+
+def run_alike(one: type[Dialect], other: type[Dialect]) -> bool:
+    """Whether programs of both are for one control; of one language it may be written anew."""
+    return one is other or (one.translator is not None and one.translator is other.translator)

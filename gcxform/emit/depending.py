@@ -10,6 +10,7 @@ import numpy as np
 
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
+from gcxform.dialect.dialect import run_alike
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.positions import Positions
 from gcxform.emit.same_rows import EXACT, SameRows
@@ -186,7 +187,7 @@ class Depending:
             return "no canned cycle to drill"
         if not self.same.modes()[line] or now.feed_mode[line] != old.feed_mode[line]:
             return "other modes (G20 or G21, G90 or G91, G93 or G94)"
-        return "another dialect" if manner.crossing else ""
+        return "" if run_alike(manner.source, manner.target) else "another dialect"
 
     def _drills(self, line: int) -> bool:
         """Whether a code drills the canned cycle in force at places of its own."""

@@ -67,6 +67,8 @@ class Translator(LineWriting):
         """What a line was taken to mean that it does not say, in sentences."""
         self.anew: dict[str, None] = {}
         """What holds besides where the program is written anew, and not in its own lines."""
+        self.in_place: dict[int, str] = {}
+        """Lines that stand in no program that is written anew, and why."""
         self.jumps: list[tuple[int, int]] = []
         """Each execution of a line that does not stand behind the one before, with that line."""
         self._behind = -1

@@ -113,6 +113,11 @@ class KeptCall(NamedTuple):
     name: str
     ends: str
 
+    @property
+    def led(self) -> str:
+        """The axes that are behind it where its block says."""
+        return self.ends.removeprefix(AT) if self.ends.startswith(AT) else ""
+
 
 BY_WAY = "way"
 AT = "at "

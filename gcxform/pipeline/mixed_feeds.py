@@ -11,7 +11,7 @@ import numpy as np
 
 from gcxform.catalogue.remedies import put_before
 from gcxform.contract.passes import PassContext
-from gcxform.dialect.dialect import LINEAR
+from gcxform.dialect.dialect import LINEAR, run_alike
 from gcxform.system.arrays import Ints
 from gcxform.toolpath.path import FeedMode, Kind, Toolpath
 
@@ -25,7 +25,9 @@ def check_mixed(read: Toolpath, path: Toolpath, context: PassContext) -> None:
     `read` is the path of the source, `path` the one to be written, of the same lines.
     """
     source, target = context.source, context.target
-    same_rule = source is target or (source.feed_rule.along_lines and target.feed_rule.along_lines)
+    same_rule = run_alike(source, target) or (
+        source.feed_rule.along_lines and target.feed_rule.along_lines
+    )
     inches = path.blocks.inch != read.blocks.inch
     if same_rule and (target.feed_rule.along_lines or not inches.any()):
         return

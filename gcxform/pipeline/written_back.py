@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from gcxform.flow.translated import Translated
 
 
+WHOLE = "the whole program: "
 COUNTED = "{} is not what a loop that is written out made of it: nothing may read it behind the end"
 
 
@@ -126,7 +127,7 @@ class SpelledOut:
         kind = getattr(plan.target.translator, "speller", None)
         if kind is None or plan.copies:
             return None
-        why = (f"the whole program: {plan.whole}",) if plan.whole else ()
+        why = (f"{WHOLE}{plan.whole}",) if plan.whole else ()
         return cls(plan, given, source, kind, marks, why=why)
 
     @property
@@ -145,7 +146,7 @@ class SpelledOut:
             self.back = self._in_its_lines()
             self.why = self.back.why
         except SpellingError as error:
-            self.why = (f"the whole program: {told(error, self.given)}",)
+            self.why = (f"{WHOLE}{told(error, self.given)}",)
             self.back = None
         return self.back or self._spelled_out()
 
@@ -189,6 +190,7 @@ class SpelledOut:
         from gcxform.emit.folding import Folded
         from gcxform.emit.spelled_out import spelled_out
 
+        self._refuse_apart()
         lines = [line for part in self.parts for line in part.source.tolist()]
         inch = self.plan.first_units == "in"
         text, of, left_out = spelled_out(
@@ -206,6 +208,18 @@ class SpelledOut:
         self.told += tuple(getattr(getattr(self.source, "translator", None), "anew", ()))
         own = [self.source.line_of(line + 1) - 1 for line in of]
         return Folded(text + self._others, (*own, *self._lines_of_others), (), ())
+
+    def _refuse_apart(self) -> None:
+        """Refuse lines that may stand in their place alone. Raises InputError."""
+        from gcxform.emit.respelling import refusal
+        from gcxform.flow.translated import Translated
+
+        if not isinstance(self.source, Translated):
+            return
+        (anew, *_) = (*self.why, f"{WHOLE}structure = {self.plan.structure}")
+        for line, why in self.source.translator.in_place.items():
+            message = f"{why}, and the program is written anew: {anew.removeprefix(WHOLE)}"
+            raise InputError(refusal(self.source, line, message).diagnostics)
 
     def sealed(self, text: bytes) -> bytes:
         """Return a proved program with the digits of its seal."""

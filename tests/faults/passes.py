@@ -19,7 +19,7 @@ MUTATIONS = (
     Mutation(
         "mixed feeds: every control counts as the other",
         "gcxform/pipeline/mixed_feeds.py",
-        "same_rule = source is target or",
+        "same_rule = run_alike(source, target) or",
         "same_rule = True or",
         f"{CORPUS}[bad/gx320-across]",
     ),

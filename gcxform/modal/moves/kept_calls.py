@@ -17,7 +17,7 @@ from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.calls import computed_words
 from gcxform.modal.meaning.tables import NUMBER
 from gcxform.modal.state import CYCLE_OFF, Modes
-from gcxform.system.arrays import Flags
+from gcxform.system.arrays import Flags, Ints
 
 UNKNOWN = "unknown"
 SAID_BY = {
@@ -53,6 +53,16 @@ def refuse_lost_modes(lines: Lines, modes: Modes) -> None:
                 hint += f', or say what the call does: ends = "{UNKNOWN}" in [control.macro.{name}]'
             lines.findings.add(line, "GX210", f"{message} changed it", hint=hint)
     lines.state.lost_by = _name_before(lines, lines.live)
+
+
+def axes_led(lines: Lines, axes: str) -> Ints:
+    """Return the axes (lines,), as bits, that calls have led to where their blocks say."""
+    led = np.zeros(lines.live, np.int64)
+    for call in lines.kept_calls:
+        meaning = lines.table.meanings[int(lines.shape[call.line])]
+        named = {axis for axis, _ in meaning.call_slots} & {*call.led} & {*axes}
+        led[call.line] = sum(1 << axes.index(axis) for axis in named)
+    return led
 
 
 def _first_of_each(which: Flags, lines: Lines) -> list[int]:
@@ -97,7 +107,6 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
     rule = lines.dialect.cycle_rule
     for call in lines.kept_calls:
         _note_computed(lines, call.line)
-        lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
         drills = rule is not None and call.name in rule.patterns
         if modes.comp[call.line] or (modes.cycle[call.line] != CYCLE_OFF and not drills):
             what, end = COMP if modes.comp[call.line] else CYCLE
@@ -108,6 +117,9 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
                 message,
                 hint=f"{end} before the call, and begin it again behind",
             )
+        if lines.dialect.translator is not None:
+            continue  # it has said so
+        lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
         said = f"{call.name} is kept: {_taken(call.ends, lines.reading.modes_count)}"
         lines.state.assumed.setdefault(said, None)
 

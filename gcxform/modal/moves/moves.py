@@ -25,6 +25,7 @@ from gcxform.modal.moves.cutter_comp import compensation, refuse_ends
 from gcxform.modal.moves.cycle_patterns import Drilling
 from gcxform.modal.moves.home import TOOL_BACK, own_moves
 from gcxform.modal.moves.in_planes import InPlanes
+from gcxform.modal.moves.kept_calls import axes_led
 from gcxform.modal.moves.nurbs import Nurbs
 from gcxform.modal.moves.open_centres import refuse_open_centres
 from gcxform.modal.moves.passages import Passages
@@ -350,7 +351,7 @@ class Moves:
                 self.modes.feed_mode,
                 self.lines.flag("ends") | self.lines.flag("loses_position"),
                 self.lines.apart,
-                self.track.named(self.lines.flag("own_moves")),
+                self.track.named(self.lines.flag("own_moves")) | axes_led(self.lines, self.axes),
             ),
             events_of(self.lines, line, self.drilling.calls, self.drilling.events),
             first=self.state.frames.first,

@@ -15,7 +15,7 @@ import gcxform as gx
 from gcxform_plugins.dialects.siemens.asides import AROUND, ENTRIES, KONT, named
 from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
 from gcxform_plugins.dialects.siemens.contours import Contours
-from gcxform_plugins.dialects.siemens.cycles import Drilling
+from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH, Drilling
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, NOBODYS, STEP, Line
@@ -34,6 +34,7 @@ class Blocks(Contours):
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
     left_out   the names of what goes along to the same control, and is not said to another one
+    calls_kept those of cycles that are called as they stand
     owed       the block of an edge that was said beside SUPA, where no word counts by it
     corners    G450 or G451, as it was said;  around: KONT is in force
     """
@@ -56,6 +57,7 @@ class Blocks(Contours):
         self.read = {**self.read, "tool_name": self._tool_name}
         self.tool_names = gx.ToolNames(self.reading)
         self.left_out = set[str]()
+        self.calls_kept: dict[str, None] = {}
 
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line, the first with its number. Raises InputError."""
@@ -231,6 +233,9 @@ class Blocks(Contours):
             self.refuse(
                 "which feed is in force behind a cycle with its own is not known", None, FEED
             )
+        if hole.kept:
+            yield from self._kept_hole(hole)
+            return
         for k, (code, text, feed) in enumerate(hole.steps):
             if code == "4":
                 yield f"G4 P{text}"
@@ -241,6 +246,25 @@ class Blocks(Contours):
             yield " ".join([*([] if k else self.distance_code(Line(), False)), *words])
         self.said, self.feed_open = "0", hole.own_feed
         self.along = None
+
+    def _kept_hole(self, hole: Drilling) -> Iterator[str]:
+        """Yield the block of a cycle that stays as it stands, with the level at which it ends."""
+        words = []
+        for _, level, _ in hole.steps:
+            self.place.absolute(hole.axis, level)
+            words = self.outside(False, [hole.axis + level])
+        if [word for word in words if word[0] != hole.axis]:
+            self.refuse("a cycle that stays as it stands, in a frame that tilts")
+        yield from self.distance_code(Line(), False)
+        ends = [word if "." in word else f"{word}." for word in words]  # else increments, perhaps
+        code = PATH if hole.cuts else HOLE
+        yield " ".join([code, *ends, gx.Speller.aside(hole.kept)])
+        self.calls_kept[hole.kept.partition("(")[0].strip().upper()] = None
+        self.feed_open, self.along, self.place.moved = True, None, True
+        if hole.cuts:
+            gone = self.plane if words else LINEAR
+            self.place.lose(gone, shifted=False)
+            self.loses |= {*gone}
 
     # --- tools ---
 

@@ -6,7 +6,7 @@ A line with a flow word says where to go on (`deciding.py`), and is no block.
 from __future__ import annotations
 
 import re
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -18,7 +18,9 @@ from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.compiling import MOST, Compiler, InPlainWords
 from gcxform_plugins.dialects.siemens.deciding import Deciding
 from gcxform_plugins.dialects.siemens.expressions import number_text
+from gcxform_plugins.dialects.siemens.going_along import bare, goes_along
 from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of
+from gcxform_plugins.dialects.siemens.place import LINEAR
 from gcxform_plugins.dialects.siemens.structure import StructureError, code
 from gcxform_plugins.dialects.siemens.variables import AXES
 
@@ -135,6 +137,27 @@ class Computing(Deciding):
             return self.learnt_text(straight, self._plainly)
         finally:
             self.straight = ""
+
+    def executed_or_along(self, items: Sequence[gx.Item]) -> Iterable[str]:
+        """Return the blocks of a line, or the one of a line that goes along. Raises InputError."""
+        try:
+            return self.executed(items)
+        except gx.InputError:
+            found = goes_along(text := bare(self.lines[self.line]))
+            if found is None or not self.reading.asides:
+                raise
+            if found.counts:
+                self.in_place[self.line] = found.counts
+            if {*found.axes} & {*LINEAR} and (self.following or self.comp or self.drilling):
+                self.refuse("this leads axes elsewhere under TRAORI, MCALL or compensation")
+            self.lose_axes(found.axes)
+            number = next((f"N{i.numbers[0]} " for i in items if i.name == "N"), "")
+            return [f"{number}{gx.Speller.along(text)}"]
+
+    def lose_axes(self, axes: str) -> None:
+        """Forget where axes are; F is the feed that is in force."""
+        self.place.lose([axis for axis in axes if axis != "F"])
+        self.loses |= {*axes}
 
     def _tells(self, items: Sequence[gx.Item]) -> bool:
         """Whether a line only shows a text that is computed, and does not stay as it stands."""

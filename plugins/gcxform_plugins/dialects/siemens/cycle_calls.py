@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens import cycles as cycles
 from gcxform_plugins.dialects.siemens.asides import TELLING
+from gcxform_plugins.dialects.siemens.axes_of_lines import MILLING
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR
 from gcxform_plugins.dialects.siemens.reading import WHY, Statements
+from gcxform_plugins.dialects.siemens.structure import code
 
 
 class CycleCalls(Statements):
@@ -19,7 +22,7 @@ class CycleCalls(Statements):
         name, given = cycles.arguments(item)
         if name == "TRAORI" and given in ([""], ["1"]):
             self._switched(line, item, name)
-        elif name in cycles.READ:
+        elif name in cycles.READ or (self.reading.asides and self._may_stay(name)):
             self._one(line, "cycle", item)
             self._drilled(line, item, name, given)
         elif name in ("HOLES1", "HOLES2") and self.drilling is not None:
@@ -58,12 +61,37 @@ class CycleCalls(Statements):
         """Take a cycle, for this place or, behind MCALL, for those of the lines that follow."""
         if self.following or self.comp:
             self.refuse(f"{name} under TRAORI or compensation", item)
-        axis = next(a for a in LINEAR if a not in self.plane)
         try:
-            hole = cycles.drilling(name, given, axis)
+            hole = self._hole(item, name, given)
         except cycles.CycleError as error:
             self.refuse(f"{name}: {error}", item)
         if line.modal is None:
             self.once = hole
         else:
             self.drilling, line.cycle = hole, None
+
+    def _may_stay(self, name: str) -> bool:
+        return name in cycles.OF_CALL or MILLING.fullmatch(f"{name}(") is not None
+
+    def _hole(self, item: gx.Item, name: str, given: Sequence[str]) -> cycles.Drilling:
+        """Return what a cycle does: of one that is not read, if its call may stay.
+
+        Raises CycleError.
+        """
+        axis = next(a for a in LINEAR if a not in self.plane)
+        try:
+            if name in cycles.READ:
+                return cycles.drilling(name, given, axis)
+        except cycles.CycleError:
+            if not self.reading.asides:
+                raise
+        if name in cycles.OF_CALL:
+            return cycles.kept_hole(name, given, axis, self.text_of(item))
+        if any(map(self._is_label, cycles.texts_in(given))):
+            raise cycles.CycleError("its contour stands in this program, and may become another")
+        return cycles.kept_path(name, given, axis, self.text_of(item))
+
+    def _is_label(self, name: str) -> bool:
+        """Whether a text names a line of the program."""
+        named = re.compile(rf"(?<![A-Z0-9_]){re.escape(name)}[ \t]*:(?!=)", re.IGNORECASE)
+        return any(named.search(code(line)) for line in self.lines)

@@ -13,6 +13,9 @@ import gcxform as gx
 
 CALLED = re.compile(r"([A-Z_]\w*)[ \t]*\((.*)\)", re.IGNORECASE | re.DOTALL)
 PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
+HOLE, PATH = "G65.1", "G65.2"
+"""The codes of blocks that stand for cycles which are called as they stand."""
+KEPT = "called as they stand, so that no pass changes what they do: {}"
 SECONDS = "10"
 """AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
 MODES = 3
@@ -49,11 +52,15 @@ class Drilling:
     steps     code, level and feed of each move at a place: 0 rapid, 1 at the feed, nothing for the
               one in force; code 4 is a dwell, of seconds
     own_feed  it has feeds of its own, and which is in force behind it is not known
+    kept      the call, where it stays as it stands: it ends at the level of its one step, if any
+    cuts      it stays, and moves in the plane as well, where no manual tells
     """
 
     axis: str
     steps: Steps
     own_feed: bool = False
+    kept: str = ""
+    cuts: bool = False
 
 
 class CycleError(Exception):
@@ -80,6 +87,40 @@ def _without_modes(name: str, given: Sequence[str], axis: str) -> list[str]:
     if how in ABSOLUTE and given[3] and not given[4]:
         rest[at + 2] = SECONDS
     return rest
+
+
+def kept_hole(name: str, given: Sequence[str], axis: str, text: str) -> Drilling:
+    """Return the hole of a cycle that is called as it stands. Raises CycleError.
+
+    It moves along the axis across the plane, and ends at RTP over the place at which it was called;
+    CYCLE86 comes back there from where it has lifted the tool off (Cycles 11.02, 2.1).
+    """
+    values = [*given, *[""] * MOST_GIVEN]
+    along, plane = OF_CALL[name]
+    if (along and values[along] not in ("", "0")) or (
+        plane and values[plane] not in ("", "0", PLANES[axis])
+    ):
+        raise CycleError("along which axis it moves is said behind its depth")
+    if not plane and any(given[along + 1 :]):
+        raise CycleError("what stands behind its axis is not known")
+    own_feed = name in ("CYCLE84", "CYCLE840")
+    return Drilling(axis, (("", _number(given[0], "RTP"), ""),), own_feed, text)
+
+
+def texts_in(given: Sequence[str]) -> list[str]:
+    """Return the texts among arguments, which may name a contour, or where it begins or ends."""
+    return [each.strip('"') for each in given if each.startswith('"') and each != '""']
+
+
+def kept_path(name: str, given: Sequence[str], axis: str, text: str) -> Drilling:
+    """Return what a cycle that mills does, and is called as it stands. Raises CycleError.
+
+    Those of a known list of arguments end at RTP (Cycles 11.02, chapter 3); of others nothing is
+    known but that they return modes and frames as they were (1.4).
+    """
+    ends = name.startswith(("POCKET", "SLOT", "LONGHOLE"))
+    steps = (("", _number(given[0], "RTP"), ""),) if ends else ()
+    return Drilling(axis, steps, False, text, True)
 
 
 class Levels(NamedTuple):
@@ -198,6 +239,14 @@ READ = {
     "CYCLE89": _bored,
 }
 """The cycles that are read, with the steps between the start and the way back."""
+OF_CALL = {
+    **{"CYCLE81": (0, 7), "CYCLE82": (0, 7), "CYCLE83": (12, 18), "CYCLE84": (12, 22)},
+    **{"CYCLE840": (11, 0), "CYCLE85": (0, 9), "CYCLE86": (0, 12), "CYCLE87": (0, 7)},
+    **{"CYCLE88": (0, 8), "CYCLE89": (0, 7)},
+}
+"""Those that may stay as they stand, with the places of AXN, the axis, and of DMODE, the plane,
+among their arguments; 0 where there is none, or it is not known."""
+MOST_GIVEN = 24
 
 
 def row(given: Sequence[str], stands: Sequence[Decimal | None]) -> list[tuple[Decimal, Decimal]]:

@@ -154,6 +154,19 @@ To the same control, by passes that keep positions, a line stays that cannot be 
 | what may not be executed: IF, WHILE, CASE, what a jump leads over | what it sets, and moves |
 | what may be executed again | as well; its lines stay |
 | other calls, M codes of the machine, synchronous actions, SETINT | all, modes too |
+
+By passes that change positions (`volumetric`, `cutter-comp`) of these only such lines stay:
+
+| what stays | what is known behind it |
+|---|---|
+| CYCLE84, 840, 86, 87, 88, and 81 to 89 as they are not read; with MCALL too | it ends at RTP |
+| POCKET, SLOT, LONGHOLE, CYCLE60 to 64, 70 to 79, 802, 899 | X, Y and F are lost, or Z as well |
+| those, where positions are compensated: their own ways would not be | refused |
+| AXN, a contour between labels of the program, a frame that tilts | refused |
+| SETAL, SETMS, M2=3, S2=, STARTFIFO, DISPLOF, SBLOF | all |
+| FL[X]=, ACC[X]=, LIMS=, G25, G26 | all; they stand in their place alone |
+| SPOS | A, B and C are lost: the spindle may be one of them |
+| G74, G75 | the axes that they name are lost; under TRAORI, MCALL, G41: refused |
 """
 
 from __future__ import annotations
@@ -180,6 +193,8 @@ class Siemens(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
         "G54.1": v.frame("frame", "work", "P"),
+        "G65.1": v.bores("XYZ"),
+        "G65.2": v.cuts("XYZ", ends="at XYZ"),
         "G9": v.at_end("non-modal"),
         "G60": v.inert("path", act="exact-stop"),
         "G64": v.inert("path", act="blend"),

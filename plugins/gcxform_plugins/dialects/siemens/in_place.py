@@ -10,6 +10,7 @@ from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
 from gcxform_plugins.dialects.siemens.computing import COMPUTED
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
+from gcxform_plugins.dialects.siemens.going_along import HEAD
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES
 from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, counted, said_of
@@ -21,10 +22,6 @@ from gcxform_plugins.dialects.siemens.words_moved import line_moved, words_in
 STEPPED = re.compile(  # it begins with letters that may be looked for one by one
     r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
     r"|(?<=[Gg])(?<![A-Za-z0-9_][Gg])[ \t]*0*91(?![0-9.]))"
-)
-HEAD = re.compile(
-    r"[ \t]*(?:[N:][ \t]*[0-9]+(?![0-9.]))?(?:[ \t]*[A-Z_]{2}[A-Z0-9_]*[ \t]*:(?!=))?[ \t]*",
-    re.IGNORECASE,
 )
 NUMBER = re.compile(r"N[0-9]+[ \t]+")
 GLUED = re.compile(r"[0-9.][A-Z]", re.IGNORECASE)

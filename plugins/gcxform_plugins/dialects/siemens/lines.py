@@ -12,6 +12,8 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.asides import AROUND
+from gcxform_plugins.dialects.siemens.cycles import HOLE
+from gcxform_plugins.dialects.siemens.cycles import PATH as KEPT_PATH
 from gcxform_plugins.dialects.siemens.gathering import gathered
 from gcxform_plugins.dialects.siemens.offsets import FURTHER, WORK
 from gcxform_plugins.dialects.siemens.place import text_of
@@ -85,7 +87,10 @@ class Lines(gx.Speller):
         if any(BLENDS.search(each) for each in asides if not each.upper().startswith("MSG")):
             words = [each for each in words if each != ("G", "64")]
         slash = SLASH.match(block)
-        said = [*asides, *self._said(words)]
+        if words and "".join(words[0]) in (HOLE, KEPT_PATH):
+            said = [*self._kept_call(dict(words)), *asides]
+        else:
+            said = [*asides, *self._said(words)]
         found = [f"{slash[1]}{line}" if slash else line for line in said]
         if comments:
             lead = ";" if comments[0].startswith(PATH) else "; "
@@ -124,6 +129,13 @@ class Lines(gx.Speller):
             self.owed = False
         if any(word[0] != "N" for word in said):
             yield " ".join(said)
+
+    def _kept_call(self, values: dict[str, str]) -> Iterator[str]:
+        """Yield what has to be said before the call of a cycle that stays, and take its end."""
+        if self.waits:
+            yield self._edge
+        self.height = Decimal(values["Z"]) if "Z" in values else None
+        self.spindle, self.owed = "", True
 
     def _check_m(self, names: list[str]) -> None:
         own = [name for name in names if name[0] == "M" and name[1:] in map(str, OWN)]

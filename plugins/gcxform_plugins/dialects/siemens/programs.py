@@ -87,7 +87,7 @@ class Programs(Scaling):
     def blocks(self, items: Sequence[gx.Item]) -> Iterable[str]:
         """Return the blocks of a line. Raises InputError."""
         if not self.reading.stays:
-            return self.executed(items)
+            return self.executed_or_along(items)
         if self.line < self.kept_until:
             return self._perhaps(items) if self.perhaps else self._kept(items, self.kept_why, True)
         self.kept_until, self.perhaps = 0, False
@@ -165,11 +165,6 @@ class Programs(Scaling):
                 self.tool = self.waiting = self.edge = None
             if MODAL_CALL.search(code(text)):
                 self.unknown_cycle, self.drilling = text.strip(), None
-
-    def lose_axes(self, axes: str) -> None:
-        """Forget where axes are; F is the feed that is in force."""
-        self.place.lose([axis for axis in axes if axis != "F"])
-        self.loses |= {*axes}
 
     def _kept(self, items: Sequence[gx.Item], why: str, opaque: bool) -> list[str]:
         """Return the block of a line that stays as it stands."""

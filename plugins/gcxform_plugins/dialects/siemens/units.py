@@ -14,6 +14,7 @@ from typing import Any
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.asides import LEFT_OUT
 from gcxform_plugins.dialects.siemens.calls import Calls
+from gcxform_plugins.dialects.siemens.cycles import KEPT
 
 HEADER = re.compile(
     r"[ \t]*%(?:_N_)?(?P<name>[A-Z0-9_]+)_(?P<kind>[A-Z]{3})[ \t]*(?:;.*)?", re.IGNORECASE
@@ -115,6 +116,8 @@ class Units(Calls):
                 self.assumed[text.format(", ".join(chosen))] = None
         if anew and (called := self._others(True, called=True)):
             self.told_anew(CALLED.format(", ".join(called)))
+        if self.calls_kept:
+            self.assumed[KEPT.format(", ".join(sorted(self.calls_kept)))] = None
         if self.left_out:
             self.assumed[LEFT_OUT.format(", ".join(sorted(self.left_out)))] = None
         return iter(())

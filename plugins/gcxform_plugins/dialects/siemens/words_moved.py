@@ -14,6 +14,7 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform import vocabulary as v
+from gcxform_plugins.dialects.siemens.going_along import HEAD
 from gcxform_plugins.dialects.siemens.place import text_of
 
 VALUE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
@@ -25,10 +26,6 @@ WORD = re.compile(
 )
 TEXT = re.compile(r'"[^"]*"')
 COMPUTED = re.compile(r"(?P<name>[A-Z][A-Z0-9]*)[ \t]*=[ \t]*(?P<way>AC[PN]?|IC|DC)?", re.I)
-HEAD = re.compile(
-    r"[ \t]*(?:[N:][ \t]*[0-9]+(?![0-9.]))?(?:[ \t]*[A-Z_]{2}[A-Z0-9_]*[ \t]*:(?!=))?[ \t]*",
-    re.IGNORECASE,
-)
 AXES = frozenset("XYZABC")
 LENGTHS = {"I": "I", "J": "J", "K": "K", "R": "CR="}
 OF_ARCS = frozenset(("CR", "AR", "TURN", "I1", "J1", "K1", "CIP", "I", "J", "K"))

@@ -142,12 +142,14 @@ class Compensation(Window):
         unknown = np.isnan(self.end) & ~self.left[:, None]
         if unknown.any():
             row = int(np.argmax(unknown.any(axis=1)))
-            axis = "XYZ"[int(np.argmax(unknown[row]))]
+            at = int(np.argmax(unknown[row]))
+            axis, lost = "XYZ"[at], (self.path.lost[: row + 1] >> at & 1).any()
+            start = f", or say start = {{ {axis} = ... }} in [input]"
             raise self.path.refuse(
                 "GX311",
                 np.array([row]),
                 f"where {axis} stands is not known here, and the error depends on it",
-                f"program {axis} before, or say start = {{ {axis} = ... }} in [input]",
+                f"program {axis} before{', behind what loses it' if lost else start}",
             )
 
     def _check_begins(self, commands: Floats) -> None:

@@ -1,0 +1,93 @@
+"""Faults of what goes along as it stands in programs of a SINUMERIK whose positions are changed."""
+
+from __future__ import annotations
+
+from faults.mutation import Mutation
+
+SIEMENS = "plugins/gcxform_plugins/dialects/siemens/"
+CASES = "tests/test_corpus.py::test_case[dialects/siemens/"
+
+
+def _kept(name: str, file: str, old: str, new: str, case: str) -> Mutation:
+    return Mutation(f"kept calls: {name}", file, old, new, f"{CASES}{case}]")
+
+
+MUTATIONS = (
+    _kept(
+        "where one has led an axis a pass has corrected it",
+        "gcxform/modal/moves/kept_calls.py",
+        "led[call.line] = sum(1 << axes.index(axis) for axis in named)",
+        "led[call.line] = 0",
+        "own-lines-level-kept",
+    ),
+    _kept(
+        "one of the same language is of another dialect",
+        "gcxform/dialect/dialect.py",
+        "one.translator is other.translator",
+        "one.translator is None",
+        "own-lines-holes-kept",
+    ),
+    _kept(
+        "AXN of a cycle is not looked at",
+        f"{SIEMENS}cycles.py",
+        'if (along and values[along] not in ("", "0")) or (',
+        "if (",
+        "kept-hole-along-another",
+    ),
+    _kept(
+        "a frame that tilts a cycle is none",
+        f"{SIEMENS}blocks.py",
+        "if [word for word in words if word[0] != hole.axis]:",
+        "if False:",
+        "kept-hole-tilted",
+    ),
+    _kept(
+        "F is known behind one",
+        f"{SIEMENS}blocks.py",
+        "self.feed_open, self.along, self.place.moved = True, None, True",
+        "self.along, self.place.moved = None, True",
+        "kept-hole-no-feed",
+    ),
+    _kept(
+        "a contour of the program is that of another",
+        f"{SIEMENS}cycle_calls.py",
+        "return any(named.search(code(line)) for line in self.lines)",
+        "return False",
+        "kept-path-of-a-label",
+    ),
+    _kept(
+        "the own ways of one are corrected",
+        f"{SIEMENS}dialect.py",
+        '"G65.2": v.cuts("XYZ", ends="at XYZ")',
+        '"G65.2": v.bores("XYZ")',
+        "kept-path-uncorrected",
+    ),
+    _kept(
+        "one that mills knows where it ends",
+        f"{SIEMENS}blocks.py",
+        "self.loses |= {*gone}",
+        "self.loses |= set()",
+        "kept-path-lost",
+    ),
+    _kept(
+        "axes that are led to points are where they were",
+        f"{SIEMENS}computing.py",
+        "self.lose_axes(found.axes)",
+        "self.lose_pole()",
+        "along-lost",
+    ),
+    _kept(
+        "a cycle does not drill where axes are led to a point",
+        f"{SIEMENS}computing.py",
+        "(self.following or self.comp or self.drilling)",
+        "(self.following or self.comp)",
+        "along-under-mcall",
+    ),
+    _kept(
+        "a limit counts anywhere",
+        "gcxform/pipeline/written_back.py",
+        "self._refuse_apart()\n        lines",
+        "lines",
+        "along-nowhere-else",
+    ),
+)
