@@ -933,13 +933,6 @@ MUTATIONS = (
         f"{CASES}[segment/siemens-own-arcs-blend]",
     ),
     Mutation(
-        "siemens: which way a rotary axis turns is gone with an arc",
-        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
-        '"XYZIJKF", "CR"',
-        '"XYZABCIJKF", "CR"',
-        f"{CASES}[segment/siemens-own-arcs-turned]",
-    ),
-    Mutation(
         "siemens: rotary axes stay where swivelling ends",
         BLOCKS,
         "            self.end_swivel()\n",
@@ -1249,7 +1242,7 @@ MUTATIONS = (
     ),
     Mutation(
         "siemens: where an axis is behind a line that stays is taken as before",
-        PROGRAMS,
+        "plugins/gcxform_plugins/dialects/siemens/computing.py",
         '        self.place.lose([axis for axis in axes if axis != "F"])',
         "        self.place.lose([])",
         f"{CASES}[dialects/siemens/stands-by-its-words]",

@@ -29,9 +29,9 @@ GLUED = re.compile(r"[0-9.][A-Z]", re.IGNORECASE)
 CODES = frozenset(("0", "1", "2", "3", "9", "17", "18", "19", "40", "60", "64", "90", "91", "94"))
 """G codes of which blocks say all that there is: not how near to a corner (G642), nor F (G71)."""
 PLAIN = frozenset("NFMS")
-PLACES = frozenset((*"XYZIJKF", "CR", "AR", "TURN", "I1", "J1", "K1", "CIP"))
+PLACES = frozenset((*"XYZABCIJKF", "CR", "AR", "TURN", "I1", "J1", "K1", "CIP"))
 """Words of which they do, too; the second also where they are computed. Of a rotary axis they say
-where it turns to, and not which way."""
+where it turns to: that it goes there, whichever way is shorter, the certificate says."""
 KINDS = frozenset(("word", "value", "named", "function", "expression", "command"))
 
 
