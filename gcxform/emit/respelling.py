@@ -27,8 +27,12 @@ WHY = {
     "METRIC": "its lengths are inches",
     "LINEAR_ONLY": "it may lead along an arc",
     "XY_ARCS": "it may lead along an arc",
+    "NO_CYCLES": "it drills in a cycle",
+    "WORKPIECE_FRAME": "it shifts or turns coordinates",
 }
 """What is wrong with a line that has what is against a fact."""
+IN_LINES = frozenset(("NO_CYCLES", "WORKPIECE_FRAME"))
+"""Facts that hold of blocks, and not of the lines that stand for them."""
 
 
 def counting_lines(translator: Translator) -> frozenset[int]:
@@ -92,16 +96,12 @@ def respelled(
 
 
 def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
-    """Refuse a line that is kept as it stands and is what a pass leaves nowhere: it would stay so.
+    """Refuse a line that would stay as it stands and is what a pass leaves nowhere.
 
     Raises SpellingError.
     """
     translator, said = source.translator, source.text.splitlines()
-    against = [
-        (translator.against[f.name], WHY[f.name])
-        for f in facts
-        if f.name in WHY and f.name in translator.against
-    ]
+    against = [f.name for f in facts if f.name in WHY and f.name in translator.against]
     if not against:
         return
     kept = [
@@ -109,10 +109,11 @@ def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
         for line, block in zip(source.origin.tolist(), said, strict=True)
         if _is_kept(translator.kept, [block])
     ]
-    for line in (*kept, *translator.left_behind()):
-        for pattern, why in against:
-            if pattern.search(source.lines[line]):
-                raise refusal(source, line, f"this line is kept as it stands, and {why}")
+    executed = {*source.executed_lines()[1:].tolist()} if IN_LINES & {*against} else ()
+    for name in against:
+        for line in (*kept, *translator.left_behind(), *(executed if name in IN_LINES else ())):
+            if translator.against[name].search(source.lines[line]):
+                raise refusal(source, line, f"this line would stay as it stands, and {WHY[name]}")
 
 
 class Spelling:

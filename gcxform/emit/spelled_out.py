@@ -29,16 +29,18 @@ def spelled_out(
     inert: frozenset[str] = frozenset(),
     asides: bool = False,
     seals: bool = False,
+    drills: bool = True,
 ) -> tuple[bytes, list[int], Counter[str]]:
     """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
     `source` are lines of the program, from 0, of which the blocks are. `inert` are M codes of the
     target that leave its axes where they stand; `asides`: whether a translator of the language has
     put into comments what goes along. `seals`: its last comment is a seal that is still open.
+    `drills`: moves of holes may be said as cycles.
     Raises InputError for a block that cannot be said.
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
-    speller.inert, speller.asides = inert, asides
+    speller.inert, speller.asides, speller.drills = inert, asides, drills
     lines, of = list[str](), list[int]()
     for block, line in zip(blocks, source, strict=True):
         text = block.decode("latin-1").rstrip("\r\n")

@@ -29,7 +29,8 @@ class LineWriting(LineShapes):
     """What stands in each line that `counts`; without it all are asked."""
     against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
     """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
-    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS."""
+    cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS; cycles by NO_CYCLES and what shifts
+    or turns coordinates by WORKPIECE_FRAME, if its blocks do not."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 

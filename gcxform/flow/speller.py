@@ -40,12 +40,14 @@ class Speller(ABC):
     block that was heard last, if its program called it so, `tool_told` what is told of it there.
     `asides`: what goes along as it was
     programmed stands in comments, which nobody else than a translator can have written.
+    `drills`: moves of holes may be said as cycles.
     `names_planes`: an arc names the axes of its plane by those of its centre, and none is in force.
     """
 
     names_planes: ClassVar[bool] = False
     inert: frozenset[str] = frozenset()
     asides: bool = False
+    drills: bool = True
     tool_name: str = ""
     tool_told: str = ""
 

@@ -17,7 +17,7 @@ from gcxform.proof.findings import Findings
 from gcxform.stamps.chain import Marks
 from gcxform.stamps.comment import sealed_anew, without_lines
 from gcxform.syntax.source import Source, lines_in
-from gcxform.toolpath.facts import ABSOLUTE
+from gcxform.toolpath.facts import ABSOLUTE, NO_CYCLES
 from gcxform.values import dataclass
 
 if TYPE_CHECKING:
@@ -202,6 +202,7 @@ class SpelledOut:
             self.plan.inert,
             self.plan.machine_reading.asides,
             self._seals,
+            NO_CYCLES not in facts_after(self.plan.path_passes),
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())

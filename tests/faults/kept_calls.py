@@ -1,4 +1,4 @@
-"""Faults of what goes along as it stands in programs of a SINUMERIK whose positions are changed."""
+"""Faults of what goes along as it stands in programs of a SINUMERIK, or may not stay."""
 
 from __future__ import annotations
 
@@ -89,5 +89,26 @@ MUTATIONS = (
         "self._refuse_apart()\n        lines",
         "lines",
         "along-nowhere-else",
+    ),
+    _kept(
+        "lines call cycles that became moves",
+        "gcxform/emit/respelling.py",
+        "executed if name in IN_LINES else ()",
+        "executed if name is None else ()",
+        "cycles-expanded",
+    ),
+    _kept(
+        "moves of cycles become cycles again",
+        f"{SIEMENS}lines.py",
+        "gathered(lines) if self.drills else iter(lines)",
+        "gathered(lines)",
+        "cycles-expanded",
+    ),
+    _kept(
+        "a kept level is the same in another frame",
+        f"{SIEMENS}blocks.py",
+        "self.in_place[self.line] = UNITS",
+        "pass",
+        "kept-hole-apart",
     ),
 )

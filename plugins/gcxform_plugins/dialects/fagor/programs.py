@@ -73,6 +73,8 @@ AGAINST = {
     "METRIC": re.compile(rf"{CODE}G[ \t]*0*70(?![0-9.])"),
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
+    "NO_CYCLES": re.compile(rf"{CODE}G[ \t]*0*8[1-9](?![0-9.])"),
+    "WORKPIECE_FRAME": re.compile(rf"{CODE}G[ \t]*0*73[ \t]*[QIJ]"),
 }
 
 

@@ -81,7 +81,7 @@ class Lines(gx.Speller):
     def gathered(self, lines: list[tuple[str, int]]) -> Iterable[tuple[str, int]]:
         """Return lines with cycles for the moves of holes; what they are in inches is not read."""
         lines = [*called_with_speed(fetched_ahead(lines))]
-        return lines if self.inch else Drilling(lines).gathered()
+        return Drilling(lines).gathered() if self.drills and not self.inch else lines
 
     def numbered(self, lines: list[str]) -> list[str]:
         """Return lines with their block numbers; those of a cycle's parameters have none."""

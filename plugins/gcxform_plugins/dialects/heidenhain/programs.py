@@ -46,6 +46,7 @@ ARCS = re.compile(
 AGAINST = {
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
+    "NO_CYCLES": re.compile(r"(?i)^[^;]*?(?:CYCL[ \t]+CALL|(?<![A-Z])M0*(?:89|99)(?![0-9]))"),
 }
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
 NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+([ \t]*))?")

@@ -18,6 +18,7 @@ from gcxform_plugins.dialects.siemens.contours import Contours
 from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH, Drilling
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
+from gcxform_plugins.dialects.siemens.going_along import UNITS
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, NOBODYS, STEP, Line
 from gcxform_plugins.dialects.siemens.moves import OF_WHICH, rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
@@ -253,6 +254,8 @@ class Blocks(Contours):
         for _, level, _ in hole.steps:
             self.place.absolute(hole.axis, level)
             words = self.outside(False, [hole.axis + level])
+            if words != [hole.axis + level]:
+                self.in_place[self.line] = UNITS
         if [word for word in words if word[0] != hole.axis]:
             self.refuse("a cycle that stays as it stands, in a frame that tilts")
         yield from self.distance_code(Line(), False)

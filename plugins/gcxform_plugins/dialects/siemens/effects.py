@@ -56,6 +56,8 @@ AGAINST = {
     "METRIC": re.compile(rf"{CODE}G[ \t]*0*700?(?![0-9.])"),
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
+    "NO_CYCLES": re.compile(rf"{CODE}(?:CYCLE8[1-9]|HOLES[12])(?![A-Z0-9_])"),
+    "WORKPIECE_FRAME": re.compile(rf"{CODE}A?(?:TRANS|ROTS?|SCALE|MIRROR)[ \t]+[A-Z]"),
 }
 """Where these stand in a line that stays, a pass cannot do what it is for."""
 

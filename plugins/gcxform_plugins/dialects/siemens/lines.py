@@ -100,7 +100,7 @@ class Lines(gx.Speller):
 
     def gathered(self, lines: list[tuple[str, int]]) -> Iterator[tuple[str, int]]:
         """Return all lines, with cycles for the moves of holes."""
-        return gathered(lines)
+        return gathered(lines) if self.drills else iter(lines)
 
     def _said(self, words: list[tuple[str, str]]) -> Iterator[str]:
         if not words:
