@@ -192,7 +192,7 @@ class SpelledOut:
 
         self._refuse_apart()
         lines = [line for part in self.parts for line in part.source.tolist()]
-        inch, own = self.plan.first_units == "in", self.plan.machine_reading.asides
+        inch, anew = self.plan.first_units == "in", self.plan.machine_reading.asides
         text, of, left_out = spelled_out(
             self._blocks.splitlines(keepends=True),
             lines,
@@ -200,9 +200,9 @@ class SpelledOut:
             self.given.name,
             inch,
             self.plan.inert,
-            own,
+            anew,
             self._seals,
-            not (own and NO_CYCLES in facts_after(self.plan.path_passes)),
+            not (anew and NO_CYCLES in facts_after(self.plan.path_passes)),
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())
