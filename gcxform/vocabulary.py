@@ -44,7 +44,7 @@ from gcxform.dialect.cycle_rule import (
     tap,
 )
 from gcxform.dialect.logic import with_logic
-from gcxform.flow.block_words import At, BlockWords, Change
+from gcxform.flow.block_words import At, BlockWords, Change, Worded
 from gcxform.machine.formats import ProgramSettings, control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.modal.expressions.value import Evaluator, LocatedError
@@ -98,6 +98,7 @@ __all__ = [
     "Small",
     "Step",
     "Tool",
+    "Worded",
     "at_end",
     "barrier",
     "bores",

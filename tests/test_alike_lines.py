@@ -11,6 +11,7 @@ from test_refolded import compensating
 
 from gcxform.emit.alike_lines import AlikeLines, Form
 from gcxform.emit.own_lines import OwnLines
+from gcxform.flow.block_words import Worded
 
 PLACES = ("X{}", "X{} Y{}", "Y{} Z{}", "Z{}", "X{} Y{} Z{}", "x{} Y{}")
 BETWEEN = (
@@ -71,7 +72,7 @@ def test_most_lines_are_alike(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_a_form_is_filled_and_told() -> None:
-    known = AlikeLines()
+    known = AlikeLines(Worded())
     known.learn("X1 X2", "X2", "X3", "X1 X3")
     assert known.spelled("X1 X2", "X2", "X3") is None
     known.learn("N1 G1 X1", "G1 X1.", "G1 X1.5 Y2.", "N1 G1 X1.5 Y2")
@@ -85,7 +86,7 @@ def test_a_form_is_filled_and_told() -> None:
 
 
 def test_words_of_a_comment_are_none() -> None:
-    known = AlikeLines()
+    known = AlikeLines(Worded())
     known.learn("X5 ; X9", "X5 (X9)", "X5 Y3. (X9)", "X5 Y3 ; X9")
     assert known.spelled("X7 ; X8", "X7 (X8)", "X7 Y3. (X8)") == "X7 Y3 ; X8"
     before, now = dict[str, Decimal](), dict[str, Decimal]()

@@ -10,15 +10,12 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 
-from gcxform.flow.block_words import AXES, DISTANCES, At, BlockWords, block_of
+from gcxform.flow.block_words import AXES, DISTANCES, VALUE, At, BlockWords, Worded, block_of
 from gcxform.flow.speller import COMMENT, WORD
 from gcxform.values import dataclass
 
-VALUE = r"[-+]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)"
 NUMBERS = re.compile(rf"(?<![GMgm0-9.]){VALUE}")
 """Numbers of all words but codes."""
-PLAIN = re.compile(rf"(?:[ \t]*[NGXYZABCFMS]{VALUE})+(?=[ \t]*(?:;|\Z))", re.IGNORECASE)
-"""Words that a line has as its block has them."""
 STAYING = frozenset("NS")
 Key = tuple[str, str, str]
 Numbers = dict[str, str]
@@ -35,10 +32,12 @@ class Form:
 class AlikeLines:
     """The forms of lines that were spelled, and where the axes stand behind those that are alike.
 
-    `was` has the last words of blocks as they were read, by letter, `now` of what those became.
+    `worded` says what lines are that have nothing but words, as their blocks have them. `was` has
+    the last words of blocks as they were read, by letter, `now` of what those became.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, worded: Worded) -> None:
+        self.worded = worded
         self.forms: dict[Key, Form | None] = {}
         self.free: dict[str, bool] = {}
         self.was: Numbers = {}
@@ -49,10 +48,11 @@ class AlikeLines:
         form = self.forms.get(_key(raw, was, now))
         if form is None:
             return None
-        said, before, behind = _said(raw), _words(was), _words(now)
+        before, behind = _words(was), _words(now)
         self.was |= before
         self.now |= behind
-        return _filled(form, said, before, behind) + _rest(raw)
+        head, words, rest = self._parts(raw)
+        return head + self._filled(form, _words(words.upper()), before, behind) + rest
 
     def passes(self, block: str) -> bool:
         """Go on behind a block that stays; whether its words lead where they did before it."""
@@ -72,13 +72,34 @@ class AlikeLines:
         if key in self.forms:
             return
         self.forms[key] = None
-        rest = _rest(raw)
-        plain = PLAIN.match(raw) and _free(block_of(was)) and _free(block_of(now))
+        head, words, rest = self._parts(raw)
+        plain = words and _free(block_of(was)) and _free(block_of(now))
         if not plain or not found.endswith(rest):
             return
-        form = _form_of(found[: len(found) - len(rest)])
-        if _filled(form, _said(raw), _words(was), _words(now)) + rest == found:
+        form = _form_of(found[len(head) : len(found) - len(rest)])
+        if head + self._filled(form, _words(words.upper()), _words(was), _words(now)) + rest == (
+            found
+        ):
             self.forms[key] = form
+
+    def _parts(self, raw: str) -> tuple[str, str, str]:
+        """Return what stands before the words of a line, these, and blanks with a comment."""
+        found = self.worded.line.match(raw)
+        if found is None:
+            return "", "", raw
+        return found["head"], found["words"], raw[found.end() :]
+
+    def _filled(self, form: Form, said: Numbers, before: Numbers, behind: Numbers) -> str:
+        """Return the words of a form: what their block says as before stands as it did."""
+        numbers = []
+        for letter in form.words:
+            old, new = said.get(letter), behind.get(letter)
+            same = old is not None and new is not None and _same(before.get(letter), new)
+            if letter in STAYING or new is None or same:
+                numbers.append(old or "")
+            else:
+                numbers.append(self.worded.number(letter, new, old))
+        return form.text % tuple(numbers)
 
     def settle(self, before: At, behind: At) -> None:
         """Tell where the axes stand behind all lines so far, as they were read and as written."""
@@ -95,21 +116,9 @@ def _words(block: str) -> Numbers:
     return dict(WORD.findall(COMMENT.sub("", block)))
 
 
-def _said(raw: str) -> Numbers:
-    """Return the words of a line; those in its comment are none."""
-    words = PLAIN.match(raw)
-    return _words(words[0].upper()) if words else {}
-
-
 def _free(block: BlockWords) -> bool:
     """Whether the words of a block are places, and those behind it lead where they did before."""
     return not (block.shifts or block.in_machine or block.bends or DISTANCES & {*block.codes})
-
-
-def _rest(raw: str) -> str:
-    """Return what stands behind the words of a line: blanks, and a comment."""
-    words = PLAIN.match(raw)
-    return raw[words.end() :] if words else ""
 
 
 def _form_of(text: str) -> Form:
@@ -117,23 +126,5 @@ def _form_of(text: str) -> Form:
     return Form(NUMBERS.sub("%s", text.replace("%", "%%")), letters)
 
 
-def _filled(form: Form, said: Numbers, before: Numbers, behind: Numbers) -> str:
-    """Return the words of a form: what their block says as before stands as it did."""
-    numbers = []
-    for letter in form.words:
-        new = behind.get(letter)
-        if letter in STAYING or new is None or (letter in said and _same(before.get(letter), new)):
-            numbers.append(said.get(letter, ""))
-        else:
-            numbers.append(_plain(new))
-    return form.text % tuple(numbers)
-
-
 def _same(one: str | None, other: str) -> bool:
     return one == other or (one is not None and Decimal(one) == Decimal(other))
-
-
-def _plain(number: str) -> str:
-    number = number.lstrip("+")
-    number = number.rstrip("0").rstrip(".") if "." in number else number
-    return "0" if number in ("", "-0", "-") else number

@@ -18,6 +18,7 @@ from gcxform.flow.block_words import (
     DISTANCES,
     LINEAR,
     MOTIONS,
+    SIDES,
     At,
     BlockWords,
     Change,
@@ -29,22 +30,41 @@ from gcxform.stamps.comment import is_stamp
 from gcxform.values import dataclass
 
 NOTHING = frozenset[str]()
+GROUPS = {"motion": MOTIONS, "side": SIDES}
 Lines = tuple[str, ...]
 
 
 @dataclass
 class _Standing:
-    """What is in force in blocks, one after the other: steps or positions, and where axes stand."""
+    """What is in force in blocks, one after the other: steps or positions, and where axes stand.
+
+    `modes` are the codes of `GROUPS`.
+    """
 
     steps: bool = False
     at: At = field(default_factory=dict)
+    modes: dict[str, str] = field(default_factory=dict)
+
+    def behind(self, blocks: Sequence[BlockWords]) -> _Standing:
+        """Return what is in force behind some blocks."""
+        found = _Standing(self.steps, {**self.at}, {**self.modes})
+        for block in blocks:
+            found.take(block)
+        return found
+
+    def say(self, block: BlockWords) -> None:
+        """Take the modes of a block."""
+        for name, codes in GROUPS.items():
+            said = [code for code in block.codes if code in codes]
+            self.modes |= {name: said[-1]} if said else {}
 
     def take(self, block: BlockWords) -> None:
         """Go on behind a block."""
         self.steps = block.steps(self.steps)
+        self.say(block)
         if block.shifts:
             self.at.clear()
-        for letter, value in block.positions:
+        for letter, value in block.positions if block.moves else ():
             before = self.at.get(letter)
             if block.in_machine or (self.steps and before is None):
                 self.at.pop(letter, None)
@@ -66,9 +86,9 @@ class OwnLines:
         self.source, self.translator = source, source.translator
         self.whole, self.written = whole, written
         self.speller = Spelling(self.translator, source.text.splitlines(), asides=True)
-        self.counting = counting_lines(self.translator)
+        self.counting = counting_lines(self.translator) | {*self.translator.hanging()}
         self.before, self.now = _Standing(), _Standing()
-        self.alike = AlikeLines()
+        self.alike = AlikeLines(self.translator.worded())
         self.frames: dict[int, tuple[object, bool]] = {}
         self.owed = NOTHING
 
@@ -108,6 +128,8 @@ class OwnLines:
         found = self.alike.spelled(raw, was, now) if found is None else found
         if found is not None:
             self.speller.met([[now.encode("latin-1")]])
+            if "G" in now:
+                self.now.say(block_of(now))
         return found
 
     def _worded(self, line: int, first: int, stop: int, frame: object) -> Lines | None:
@@ -119,7 +141,17 @@ class OwnLines:
         if is_stamp(raw) or (was == made and line not in self.counting and not due):
             self._pass(was, made)
             return (raw,)
-        return self._changed(line, frame, was, made, due) if made else None
+        if not made:
+            return None
+        beside = self._differs(first - 1) or self._differs(stop)
+        return self._changed(line, frame, was, made, due, beside)
+
+    def _differs(self, block: int) -> bool:
+        """Whether a block became another."""
+        there = 0 <= block < len(self.whole)
+        return there and [block_of(each) for each in self.written[block]] != [
+            block_of(self.whole[block])
+        ]
 
     def _settle(self, raw: str, made: Sequence[BlockWords]) -> frozenset[str]:
         """Return the codes of blocks that are owed, and which the line does not say.
@@ -133,15 +165,17 @@ class OwnLines:
                 self.owed -= group
         return owed - said
 
-    def written_out(self, first: int, stop: int) -> Lines | None:
-        """Return blocks as lines by themselves, in their frame; None where they cannot be said."""
+    def written_out(self, line: int, first: int, stop: int) -> Lines | None:
+        """Return an execution of a line as lines by themselves; None where they cannot be said."""
+        if self.translator.stands_alone(line):
+            return self.spelled(line, first, stop)
         frame = self.source.frame_at(int(self.source.visits[first]))
         self.alike.settle(self.before.at, self.now.at)
         was, made = self._blocks(first, stop)
         for block in was:
             self.before.take(block)
         said = self._said(frame, made)
-        self.owed = DISTANCES | MOTIONS
+        self.owed = self.translator.lasting
         return None if said is None else tuple(said)
 
     def _blocks(self, first: int, stop: int) -> tuple[list[BlockWords], list[BlockWords]]:
@@ -164,14 +198,18 @@ class OwnLines:
         was: Sequence[BlockWords],
         made: Sequence[BlockWords],
         due: frozenset[str],
+        beside: bool,
     ) -> Lines | None:
         """Return the lines for a line that became another; None where it cannot be said.
 
         It has to say what is `due`. The blocks before and behind the one that has changed stay
-        with the line.
+        with the line. Words of a line are those of the first that leads somewhere.
         """
+        leads = next((k for k, block in enumerate(was) if block.leads), len(was) - 1)
         ahead = 0
         while ahead < min(len(was), len(made)) - 1 and was[ahead] == made[ahead]:
+            if was == made and ahead == leads:
+                break
             ahead += 1
         behind = 0
         while (
@@ -180,33 +218,37 @@ class OwnLines:
             behind += 1
         if not due <= {*made[ahead].codes}:
             return None
-        if len(was) - ahead - behind != 1 or (behind and len(made) - ahead - behind > 1):
+        several = len(was) - ahead - behind != 1 or (behind and len(made) - ahead - behind > 1)
+        if several or ahead > leads:
+            return self._anew(line, frame, was, made)
+        change = self._change(frame, was[: ahead + 1], made[: ahead + 1], due, beside)
+        text = None if change is None else self.translator.changed_line(line, change)
+        if change is None or text is None:
             return self._anew(line, frame, was, made)
         self._pass(was[:ahead], made[:ahead])
+        self.before.take(was[ahead])
+        self.now.take(made[ahead])
+        self.speller.met([[as_text(change.now)]])
         last = len(made) - behind
-        found = self._in_place(line, frame, was[ahead], made[ahead:last], due)
+        found = self._pieces(frame, text, made[ahead + 1 : last])
         self._pass(was[ahead + 1 :], made[last:])
         return found
 
-    def _in_place(
+    def _change(
         self,
-        line: int,
         frame: object,
-        was: BlockWords,
+        was: Sequence[BlockWords],
         made: Sequence[BlockWords],
         due: frozenset[str],
-    ) -> Lines | None:
-        """Return a line with its words changed where they stand, and the pieces behind it."""
-        old = self._inside(frame, was, self.before)
-        new = self._inside(frame, made[0], self.now)
-        text = None
-        if old is not None and new is not None:
-            change = Change(old, new, self.before.steps, self.now.steps, due)
-            text = self.translator.changed_line(line, change)
-        if text is None:
+        beside: bool,
+    ) -> Change | None:
+        """Return what the last of some blocks became, as it counts in a frame; nothing goes on."""
+        before, now = self.before.behind(was[:-1]), self.now.behind(made[:-1])
+        stood, stands = {**before.at}, {**now.at}
+        old, new = self._inside(frame, was[-1], before), self._inside(frame, made[-1], now)
+        if old is None or new is None:
             return None
-        self.speller.met([[as_text(new)]])
-        return self._pieces(frame, text, made[1:])
+        return Change(old, new, before.steps, now.steps, due, stood, stands, now.modes, beside)
 
     def _anew(
         self, line: int, frame: object, was: Sequence[BlockWords], made: Sequence[BlockWords]
@@ -220,13 +262,14 @@ class OwnLines:
 
     def _pieces(self, frame: object, text: str, made: Sequence[BlockWords]) -> Lines | None:
         """Return a line and what is said behind it."""
+        first = text.split("\n")
         if not made:
-            return (text,)
+            return tuple(first)
         if self.now.steps:  # by IC alone, perhaps
             made = [made[0].saying("G91"), *made[1:]]
             self.owed |= DISTANCES
         said = self._said(frame, made)
-        return (text, *said) if said else None
+        return (*first, *said) if said else None
 
     def _said(self, frame: object, made: Sequence[BlockWords]) -> list[str] | None:
         """Return blocks in the words of the language; None where one cannot be said."""

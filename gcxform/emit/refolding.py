@@ -119,7 +119,7 @@ class _Refolding:
             said, run = self.translator.sets(line), runs.get(visit)
             if said is None:
                 raise refusal(self.source, line, SETS)
-            texts = () if run is None else lines.written_out(run[2], run[3])
+            texts = () if run is None else lines.written_out(*run[1:])
             if texts is None:
                 raise refusal(self.source, line, UNSAID)
             made += [(each, line) for each in (*said, *texts)]
@@ -156,7 +156,10 @@ class _Refolding:
             found += [b"" if found[-1].endswith((b"\n", b"\r")) else between]
             found += [each.encode("latin-1") + between for each in seal]
             of += [of[-1] if of else 0] * len(seal)
-        return Folded(b"".join(found), tuple(of), (), tuple(self.why))
+        text = b"".join(found)
+        if of != [*range(line + 1)]:
+            text = self.translator.renumbered(text.decode("latin-1")).encode("latin-1")
+        return Folded(text, tuple(of), (), tuple(self.why))
 
     def _of_line(self, line: int, old: str, takes_stamps: bool) -> Lines:
         if takes_stamps and is_stamp(old):

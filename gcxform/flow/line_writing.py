@@ -8,10 +8,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
-from gcxform.flow.block_words import At, Change
+from gcxform.flow.block_words import DISTANCES, MOTIONS, At, Change, Worded
 from gcxform.flow.line_shapes import LineShapes
 from gcxform.flow.speller import Speller
 
@@ -31,6 +31,8 @@ class LineWriting(LineShapes):
     """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
     cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS; cycles by NO_CYCLES and what shifts
     or turns coordinates by WORKPIECE_FRAME, if its blocks do not."""
+    lasting: ClassVar[frozenset[str]] = DISTANCES | MOTIONS
+    """Codes that hold for the lines behind; where each line says its own motion there are none."""
     kept: ClassVar[str] = ""
     """The code of blocks that stand for a line that is kept as it stands, whatever it does."""
 
@@ -59,6 +61,14 @@ class LineWriting(LineShapes):
         del line, change
         return None
 
+    def worded(self) -> Worded:
+        """Return what lines are that have nothing but words, as their blocks have them."""
+        return Worded()
+
+    def hanging(self) -> Iterable[int]:
+        """Return lines, from 0, that hang on more than their blocks: they change with others."""
+        return ()
+
     def inside(self, frame: Any, named: At, before: At, steps: bool, bends: bool) -> At | None:
         """Return words of axes, by letter, as they count in a frame; None where that is not known.
 
@@ -69,6 +79,18 @@ class LineWriting(LineShapes):
 
     def loops(self) -> list[tuple[int, int]]:
         """Return the first and the last line, from 0, of each loop that its last line ends."""
+        return []
+
+    def stands_alone(self, line: int) -> bool:
+        """Whether a line, changed in its own form, may stand where it is written out."""
+        del line
+        return False
+
+    def depths(self) -> list[tuple[int, int]]:
+        """Return executions behind which calls of lines of this file are deeper, or less, and how.
+
+        The first line at a depth is the one after the execution, by its number, that leads there.
+        """
         return []
 
     def sets(self, line: int) -> list[str] | None:

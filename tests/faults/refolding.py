@@ -26,8 +26,8 @@ MUTATIONS = (
     _own(
         "of alike lines words are written anew that say the same",
         ALIKE,
-        "letter in said and _same(before.get(letter), new)",
-        "letter in said and False",
+        "old is not None and new is not None and _same(before.get(letter), new)",
+        "False",
         f"{ALIKE_TESTS}::test_a_form_is_filled_and_told",
     ),
     _own(
@@ -124,15 +124,15 @@ MUTATIONS = (
     _own(
         "what is called behind a line is not written out with it",
         UNROLLING,
-        "self.own[behind] - 1 if behind",
-        "self.own[behind - 1] if behind",
+        "self.own[level[behind]] - 1 if",
+        "self.own[level[behind] - 1] if",
         f"{CASES}-called]",
     ),
     _own(
         "another call than that of the line is written out",
         UNROLLING,
-        'np.searchsorted(self.own, visit, "right") - 1',
-        'np.searchsorted(self.own, visit, "right") - 2',
+        'np.searchsorted(self.own, visit, "right")) - 1',
+        'np.searchsorted(self.own, visit, "right")) - 2',
         f"{CASES}-called]",
     ),
     _own(
@@ -189,8 +189,8 @@ MUTATIONS = (
     _own(
         "a distance that what is written out left in force stays",
         OWN_LINES,
-        "self.owed = DISTANCES | MOTIONS",
-        "self.owed = MOTIONS",
+        "self.owed = self.translator.lasting",
+        "self.owed = MOTIONS & self.translator.lasting",
         f"{CASES}-owed]",
     ),
     _own(
