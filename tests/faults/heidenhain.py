@@ -164,7 +164,7 @@ MUTATIONS = (
     Mutation(
         "klartext: nobody is told that parameters are set no more",
         PARAMETERS,
-        "self.assumed[UNSET] = None",
+        "self.told_anew(UNSET)",
         "pass",
         f"{COMPENSATED}-sets-none]",
     ),

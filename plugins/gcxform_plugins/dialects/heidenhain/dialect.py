@@ -1,7 +1,7 @@
 """HEIDENHAIN TNC 640 and iTNC 530 in Klartext.
 
-It is written from itself alone, by passes that keep positions: lines that are not changed keep
-their bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
+Lines that are not changed keep their bytes. By passes that keep positions what is refused below is
+kept as it stands, with all that is lost behind it; by others, words are changed where they stand.
 Where a page of a manual is named, that is where it is said; [K] is known from practice only.
 
 | what | TNC | said |
@@ -108,7 +108,7 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.heidenhain.programs import Programs
+from gcxform_plugins.dialects.heidenhain.in_place import InPlace
 
 
 class Heidenhain(gx.Dialect):
@@ -116,7 +116,7 @@ class Heidenhain(gx.Dialect):
 
     name = "heidenhain"
     axes = "XYZABCUVW"
-    translator = Programs
+    translator = InPlace
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         **{code: gx.Code("cutter-comp", takes="D") for code in ("G41", "G42")},

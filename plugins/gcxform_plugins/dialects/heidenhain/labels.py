@@ -51,6 +51,8 @@ class Labels(FreeContours):
         self.repeated: dict[tuple[int, int], int] = {}
         self.selected = ""
         self._labels: dict[int, dict[str, int]] = {}
+        self.deep: list[tuple[int, int]] = []
+        """Executions of lines that call a label or a program, or end one, and how deep that is."""
 
     @property
     def part(self) -> range:
@@ -91,6 +93,7 @@ class Labels(FreeContours):
         depth = len(self.calls)
         self.left = {key: n for key, n in self.left.items() if key[1] < depth}
         call = self.calls.pop()
+        self.deep.append((self.visit, len(self.calls)))
         if call.lines is not None:
             self.q = {key: value for key, value in self.q.items() if key[:2] != "QL"}
             self.q |= dict(call.local)
@@ -121,6 +124,7 @@ class Labels(FreeContours):
 
     def _enter(self, item: gx.Item, call: Call) -> None:
         self.calls.append(call)
+        self.deep.append((self.visit, len(self.calls)))
         if len(self.calls) > DEEPEST:
             raise self.refusal("GX223", f"calls are deeper than {DEEPEST}", item)
         self.at = call.first

@@ -142,7 +142,7 @@ class Parameters(Labels):
         value = self.q[key]
         if not key.startswith("QR"):
             if self.reading.asides and key[1:].isdigit():
-                self.assumed[UNSET] = None
+                self.told_anew(UNSET)
             return []
         if value is None or float(written(value)) != value:
             self.check_along(f"{key}, which outlives the program", item)

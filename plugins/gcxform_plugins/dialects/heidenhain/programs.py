@@ -221,13 +221,15 @@ class Programs(Runs):
 
         None for one with an M function that no block says: it would be gone.
         """
-        if self.tied or not all(map(_is_said, self.items(line))):
+        unsaid = not self.reading.asides and not all(map(_is_said, self.items(line)))
+        if self.tied or unsaid:
             return None
         text = self.lines[line]
         head = HEAD.match(text)
-        first, *more = [bare for each in said if (bare := each.partition(";")[0].rstrip())]
-        comment = text[len(code(text)) :]
-        return "\n".join([f"{head[0] if head else ''}{first} {comment}".rstrip(), *more])
+        words = [bare for each in said if (bare := each.partition(";")[0].rstrip())]
+        first, comment = " ".join(words[:1]), text[len(code(text)) :]
+        begins = f"{first} {comment}".strip()
+        return "\n".join([f"{head[0] if head else ''}{begins}", *words[1:]])
 
     def renumbered(self, text: str) -> str:
         """Return a program with its block numbers anew; those of free contours may name others."""
