@@ -260,6 +260,7 @@ class Plan:
         own = self.source.translator is self.target.translator and not (same or stays)
         reading = replace(reading, curves=curves, stays=stays, asides=own)
         open_ = self._open_unit(counts) if not reading.units else ""
+        reading = replace(reading, compensates=compensates(self.path_passes))
         return replace(
             reading, crosses=not same, turns_plainly=folds, modes_count=counts, unit_open=open_
         )

@@ -292,8 +292,8 @@ MUTATIONS = (
     Mutation(
         "klartext: a compensated program no more writes into a table",
         PARAMETERS,
-        "if number == WRITES:",
-        "if number < 0:",
+        "writes = number == WRITES and self.reading.asides",
+        "writes = False",
         f"{COMPENSATED}-writes-a-table]",
     ),
     Mutation(

@@ -1,11 +1,18 @@
-"""Faults of what goes along as it stands in programs of a SINUMERIK, or may not stay."""
+"""Faults of what goes along as it stands in its own line, or may not."""
 
 from __future__ import annotations
 
 from faults.mutation import Mutation
 
 SIEMENS = "plugins/gcxform_plugins/dialects/siemens/"
+HEIDENHAIN = "plugins/gcxform_plugins/dialects/heidenhain/"
+KLARTEXT = "tests/test_corpus.py::test_case[dialects/heidenhain/"
 CASES = "tests/test_corpus.py::test_case[dialects/siemens/"
+
+
+def _called(name: str, old: str, new: str, case: str) -> Mutation:
+    file = f"{HEIDENHAIN}kept_cycles.py"
+    return Mutation(f"kept calls: {name}", file, old, new, f"{KLARTEXT}{case}]")
 
 
 def _kept(name: str, file: str, old: str, new: str, case: str) -> Mutation:
@@ -102,7 +109,7 @@ MUTATIONS = (
         f"{SIEMENS}lines.py",
         "gathered(lines) if self.drills else iter(lines)",
         "gathered(lines)",
-        "cycles-expanded",
+        "cycles-stay-moves",
     ),
     _kept(
         "a kept level is the same in another frame",
@@ -110,5 +117,28 @@ MUTATIONS = (
         "self.in_place[self.line] = UNITS",
         "pass",
         "kept-hole-apart",
+    ),
+    _called(
+        "behind a cycle beside its hole the tool is over that",
+        "if number in BESIDE:",
+        "if False:",
+        "kept-hole-beside",
+    ),
+    _called("F is known behind a thread", "self.feed_lost = True", "pass", "kept-hole-feed"),
+    _called(
+        "a cycle ends as high as Q200 says", "max(clear, high)", "clear", "own-lines-holes-kept"
+    ),
+    _called(
+        "what is called as it stands is written anew",
+        "self.in_place[self.line] = IN_PLACE",
+        "pass",
+        "kept-hole-apart",
+    ),
+    Mutation(
+        "kept calls: a thread is one of moves where positions are corrected",
+        f"{HEIDENHAIN}kept_cycles.py",
+        "tied = number == RIGID and not self.reading.compensates",
+        "tied = number == RIGID",
+        f"{KLARTEXT}own-lines-holes-kept]",
     ),
 )

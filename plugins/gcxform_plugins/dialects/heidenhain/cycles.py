@@ -8,7 +8,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
-from gcxform_plugins.dialects.heidenhain.datums import VALUE, Datums
+from gcxform_plugins.dialects.heidenhain.datums import VALUE
 from gcxform_plugins.dialects.heidenhain.holes import (
     HOLES,
     OTHERS,
@@ -19,6 +19,7 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
+from gcxform_plugins.dialects.heidenhain.kept_cycles import KeptCycles
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
@@ -44,7 +45,7 @@ SLOWLY = 201, 203
 ALONE = "let the CAM write the hole as plain moves"
 
 
-class Cycles(Datums):
+class Cycles(KeptCycles):
     """Reads cycles, and writes those that are called as moves."""
 
     def __init__(self, *program: Any) -> None:
@@ -72,7 +73,8 @@ class Cycles(Datums):
             return self._tolerance(item, part, text)
         if number == 247:
             return self.preset(item, self._parameters(item, text))
-        if number in HOLES or (number == TAP and not self.reading.stays):
+        read = number in HOLES or (number == TAP and not self.reading.stays)
+        if read or self.keeps(number):
             self.refers = set()
             self.hole, self.cycle = self._parameters(item, text), number
             return []
@@ -220,13 +222,24 @@ class Cycles(Datums):
     def called(self, item: gx.Item) -> list[str]:
         """M99 and CYCL CALL: the hole where the tool stands."""
         self._check_cycle(item)
+        if self.keeps(self.cycle):
+            return self.kept_hole(item, self.cycle, self.hole)
         if self.cycle in HOLES:
-            return self._hole(item, self.hole)
+            return self._hole_or_kept(item)
         if self.cycle == TAP:
             return self._tapped(item, self.hole)
         if self.cycle == 1:
             return self._pecked(item)
         raise self.refusal("GX215", "no cycle that is known here has been defined", item)
+
+    def _hole_or_kept(self, item: gx.Item) -> list[str]:
+        """Return the blocks of a hole; the one of its cycle where that is not certain."""
+        try:
+            return self._hole(item, self.hole)
+        except gx.InputError:
+            if not self.reading.asides:
+                raise
+            return self.kept_hole(item, self.cycle, self.hole)
 
     def _hole(self, item: gx.Item, told: dict[int, Decimal]) -> list[str]:
         """Return the blocks of a hole in one stroke: out in rapid, or at Q208."""

@@ -128,6 +128,7 @@ class Heidenhain(gx.Dialect):
         "G51.1": v.frame("mirror", "mirror", v.AXES),
         "G52": v.frame("non-modal", "local", v.AXES),
         "G53": v.frame("non-modal", "machine"),
+        "G65.1": v.bores("XYZ"),
         "G61": v.inert("path", act="exact-path"),  # what no T says: nearer than any tolerance
         "G64": v.inert("path", "P", "P", act="blend"),
         "G68": v.frame("rotation", "rotate", v.AXES + "RIJK"),

@@ -12,12 +12,9 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
-from gcxform_plugins.dialects.heidenhain.fetching import (
-    called_with_speed,
-    fetched_ahead,
-    words_of,
-)
+from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetched_ahead, words_of
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
+from gcxform_plugins.dialects.heidenhain.kept_cycles import CallsKept
 from gcxform_plugins.dialects.heidenhain.numerals import bare, coded, signed, worded
 from gcxform_plugins.dialects.heidenhain.words import exact
 
@@ -44,7 +41,7 @@ OF_DELTA = {"G43.1": "DL", "G41.1": "DR", "G42.1": "DR"}
 """What TOOL CALL has to have told of the tool, where codes give its measures."""
 
 
-class Lines(gx.Speller):
+class Lines(CallsKept):
     """Writes blocks as lines of Klartext.
 
     place   where the axes stand, in numbers of the program; an axis that is not here is lost

@@ -37,6 +37,8 @@ WHY = {
     20: "FN 20 waits for the PLC",
     29: "FN 29 sets values of the PLC",
 }
+STANDS = (14, 19, 20, 26, 29, 37)
+"""Those that set no parameter: an error, the PLC, a table that is opened, what is exported."""
 CONTROL = range(100, 200)
 UNSET = "what is written sets no Q parameter: what runs behind it, or calls it, may not read them"
 
@@ -145,7 +147,8 @@ class Parameters(Labels):
                 self.told_anew(UNSET)
             return []
         if value is None or float(written(value)) != value:
-            self.check_along(f"{key}, which outlives the program", item)
+            if self.reading.asides:
+                self.in_place[self.line] = f"{key}, which outlives the program, is set here"
             return []
         return self.along(f"{key} = {written(value)}")
 
@@ -171,17 +174,17 @@ class Parameters(Labels):
     def _other_function(self, item: gx.Item, number: int, text: str) -> list[str]:
         """FN from 14 on: what it prints is a comment, what it reads only the control knows."""
         if number in READS:
-            if number == WRITES:
-                self.check_along("FN 27 writes into a table", item)
             self.computes = True
             self._forget(text, item)
-            return []
+            writes = number == WRITES and self.reading.asides
+            return self.stands("FN 27 writes into a table") if writes else []
         if number in PRINTS:
-            if number != 15 or ANY.search(text.upper()):
-                self.check_along(f"FN {number} tells of parameters", item)
-            if self.reading.asides:
-                return self.along()
-            return [f"(FN {number} {text.translate(BRACKETS)})"]
+            if not self.reading.asides:
+                return [f"(FN {number} {text.translate(BRACKETS)})"]
+            tells = number != 15 or ANY.search(text.upper())
+            return self.stands(f"FN {number} tells of parameters") if tells else self.along()
+        if number in STANDS and self.reading.asides:
+            return self.stands(WHY.get(number, f"FN {number} is not resolved"))
         self.refuse(WHY.get(number, f"FN {number} is not resolved"), item)
 
     def _forget(self, text: str, item: gx.Item) -> None:

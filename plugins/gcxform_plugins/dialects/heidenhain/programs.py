@@ -13,6 +13,7 @@ from operator import attrgetter
 
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import AUTO
+from gcxform_plugins.dialects.heidenhain.kept_cycles import CALLED
 from gcxform_plugins.dialects.heidenhain.lines import Lines
 from gcxform_plugins.dialects.heidenhain.parameters import CONTROL, NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.positioning import SHORTEST, SILENT
@@ -253,6 +254,8 @@ class Programs(Runs):
         """Say which lines are kept. Raises InputError for a program that breaks off."""
         if self.kept_lines:
             self.assumed[self._told()] = None
+        if self.calls_kept:
+            self.assumed[CALLED.format(", ".join(map(str, sorted(self.calls_kept))))] = None
         if not self.rest_kept:
             super().closing()
         return iter(())

@@ -176,6 +176,11 @@ class Words(gx.Translator):
         if self.reading.asides:
             self.refuse(f"{what}, where all lines are written anew", item, STAYS)
 
+    def stands(self, what: str) -> list[str]:
+        """Return the block of a statement that goes along, and in its own line alone."""
+        self.in_place[self.line] = what
+        return self.along()
+
     # --- words ---
 
     def feed_word(self, number: str) -> str:
