@@ -10,7 +10,9 @@ written anew.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator
+from operator import itemgetter
 from pathlib import PurePath
 
 from gcxform.emit.folding import Folded
@@ -112,7 +114,9 @@ class _Refolding:
 
     def _write_out(self, walk: Walk, unit: Unit, lines: OwnLines) -> None:
         """Put what is executed in the place of the lines of a unit. Raises SpellingError."""
-        runs = {run[0]: run for run in self.runs if unit.begin <= run[0] <= unit.end}
+        first = bisect_left(self.runs, unit.begin, key=itemgetter(0))
+        stop = bisect_left(self.runs, unit.end + 1, first, key=itemgetter(0))
+        runs = {run[0]: run for run in self.runs[first:stop]}
         made: list[tuple[str, int]] = []
         for visit in range(unit.begin, unit.end + 1):
             line = int(walk.lines[visit])

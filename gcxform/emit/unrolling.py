@@ -31,6 +31,20 @@ class Unit:
     why: str
 
 
+class Executed:
+    """Executions `at` some places of the walk, in their order, and the `lines` that they are of."""
+
+    def __init__(self, at: Ints, lines: Ints) -> None:
+        self.at, self.lines = at, lines
+        self.named, self.first = np.unique(lines, return_index=True)
+        self.last = len(lines) - 1 - np.unique(lines[::-1], return_index=True)[1]
+
+    def among(self, first: int, last: int) -> tuple[int, int]:
+        """Return the first execution of lines up to another, and the last one, from 0."""
+        low, high = np.searchsorted(self.named, (first, last + 1))
+        return int(self.first[low:high].min()), int(self.last[low:high].max())
+
+
 class Walk:
     """The lines of a program in the order in which they are executed."""
 
@@ -44,6 +58,9 @@ class Walk:
         self.depth = self._depths()
         """How deep in calls of its own lines they are executed (own,)."""
         self.loops = self.translator.loops()
+        self._executed = Executed(np.arange(len(self.own)), self.lines[self.own])
+        self._less: dict[int, Ints] = {}
+        self._levels: dict[int, Executed] = {}
 
     def _depths(self) -> Ints:
         changes = [(0, 0), *self.translator.depths()]
@@ -58,38 +75,45 @@ class Walk:
             found = self.around(line, line, at, why)
             if not self.depth[at] or self._is_alone(found):
                 return found
-            at = int(np.flatnonzero(self.depth[:at] < self.depth[at])[-1])
+            at = self._call(at)[0] - 1
 
     def _is_alone(self, unit: Unit) -> bool:
         """Whether the lines of a unit are executed nowhere else."""
-        lines = self.lines[self.own]
-        found = self.own[(lines >= unit.first) & (lines <= unit.last)]
-        return bool(unit.begin <= found[0] and found[-1] <= unit.end)
+        first, last = self._executed.among(unit.first, unit.last)
+        return bool(unit.begin <= self.own[first] and self.own[last] <= unit.end)
 
-    def _level(self, at: int) -> Ints:
-        """Return the executions of lines in the call of one of them, but for calls in it."""
-        less = np.flatnonzero(self.depth < self.depth[at])
+    def _call(self, at: int) -> tuple[int, int]:
+        """Return the first execution in the call that one of a line is in, and the one behind."""
+        depth = int(self.depth[at])
+        if depth not in self._less:
+            self._less[depth] = np.flatnonzero(self.depth < depth)
+        less = self._less[depth]
         k = int(np.searchsorted(less, at))
-        begin = int(less[k - 1]) + 1 if k else 0
-        stop = int(less[k]) if k < len(less) else len(self.own)
-        return begin + np.flatnonzero(self.depth[begin:stop] == self.depth[at])
+        return int(less[k - 1]) + 1 if k else 0, int(less[k]) if k < len(less) else len(self.own)
+
+    def _level(self, at: int) -> Executed:
+        """Return the executions of lines in the call of one of them, but for calls in it."""
+        begin, stop = self._call(at)
+        if begin not in self._levels:
+            level = begin + np.flatnonzero(self.depth[begin:stop] == self.depth[at])
+            self._levels[begin] = Executed(level, self.lines[self.own[level]])
+        return self._levels[begin]
 
     def around(self, first: int, last: int, at: int, why: str) -> Unit:
         """Return the smallest unit with some lines of the program, in the call of one of them."""
         level = self._level(at)
-        lines = self.lines[self.own[level]]
         while True:
-            inside = np.flatnonzero((lines >= first) & (lines <= last))
-            among = lines[inside[0] : inside[-1] + 1]
+            begin, end = level.among(first, last)
+            among = level.lines[begin : end + 1]
             ends = [(int(among.min()), int(among.max())), *self._crossed(first, last)]
             low = min(first, *(each[0] for each in ends))
             high = max(last, *(each[1] for each in ends))
             if (low, high) == (first, last):
                 break
             first, last = low, high
-        begin, behind = self.own[level[inside[0]]], inside[-1] + 1
-        end = self.own[level[behind]] - 1 if behind < len(level) else len(self.lines) - 1
-        return Unit(first, last, int(begin), int(end), why)
+        behind = level.at[end + 1 : end + 2]
+        stop = self.own[behind[0]] - 1 if len(behind) else len(self.lines) - 1
+        return Unit(first, last, int(self.own[level.at[begin]]), int(stop), why)
 
     def _crossed(self, first: int, last: int) -> list[tuple[int, int]]:
         """Return the loops that lines stand in, or begin or end."""

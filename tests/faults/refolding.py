@@ -124,8 +124,8 @@ MUTATIONS = (
     _own(
         "what is called behind a line is not written out with it",
         UNROLLING,
-        "self.own[level[behind]] - 1 if",
-        "self.own[level[behind] - 1] if",
+        "self.own[behind[0]] - 1 if",
+        "self.own[behind[0] - 1] if",
         f"{CASES}-called]",
     ),
     _own(

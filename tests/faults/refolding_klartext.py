@@ -143,15 +143,15 @@ MUTATIONS = (
     _own(
         "lines are written out where others call them as well",
         UNROLLING,
-        "return bool(unit.begin <= found[0] and found[-1] <= unit.end)",
+        "return bool(unit.begin <= self.own[first] and self.own[last] <= unit.end)",
         "return True",
         f"{CASES}-calls]",
     ),
     _own(
         "a loop that calls is written out with the label",
         UNROLLING,
-        "begin + np.flatnonzero(self.depth[begin:stop] == self.depth[at])",
-        "np.flatnonzero(self.depth >= 0)",
+        "level = begin + np.flatnonzero(self.depth[begin:stop] == self.depth[at])",
+        "level = np.arange(len(self.own))",
         f"{TESTS}::test_a_loop_that_calls_is_written_out_without_what_it_calls",
     ),
     _own(
