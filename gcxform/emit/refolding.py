@@ -126,6 +126,8 @@ class _Refolding:
             texts = () if run is None else lines.written_out(*run[1:])
             if texts is None:
                 raise refusal(self.source, line, UNSAID)
+            if run is not None and self.translator.stands_alone(line):
+                said = []
             made += [(each, line) for each in (*said, *texts)]
         for line in range(unit.first, unit.last + 1):
             self.new[line] = tuple(made) if line == unit.first else ()

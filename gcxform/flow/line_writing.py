@@ -82,7 +82,7 @@ class LineWriting(LineShapes):
         return []
 
     def stands_alone(self, line: int) -> bool:
-        """Whether a line, changed in its own form, may stand where it is written out."""
+        """Whether a line in its own form may stand, with all it sets, where it is written out."""
         del line
         return False
 

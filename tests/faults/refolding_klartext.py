@@ -172,8 +172,29 @@ MUTATIONS = (
     _own(
         "a cycle that is defined where lines are written out is lost",
         SETTING,
-        "{*HOLES, TAP, PECKS}",
-        "{PECKS}",
+        "{*HOLES, TAP, *IN_LINES}",
+        "IN_LINES",
+        f"{CASES}-loop]",
+    ),
+    _own(
+        "statements before the last of a shift are lost",
+        SETTING,
+        "{*HOLES, TAP, *IN_LINES}",
+        "{*HOLES, TAP}",
+        f"{CASES}-frames]",
+    ),
+    _own(
+        "a shift by steps is said anew",
+        PLACE,
+        "if not goes and change.was == change.now:",
+        "if False:",
+        f"{CASES}-frames]",
+    ),
+    _own(
+        "what a line sets that stands as it did is set twice",
+        REFOLDING,
+        "if run is not None and self.translator.stands_alone(line):",
+        "if False:",
         f"{CASES}-loop]",
     ),
     _own(
@@ -193,7 +214,7 @@ MUTATIONS = (
     _own(
         "a hole that is written out is moves, where its cycle says it",
         PLACE,
-        "return own and PATH.match(text) is not None and not goes_on(text)",
+        "return own and FLOW.match(text) is None and not goes_on(text)",
         "return False",
         f"{CASES}-loop]",
     ),

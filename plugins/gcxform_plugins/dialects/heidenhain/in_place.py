@@ -21,6 +21,9 @@ CENTRE = re.compile(r"[\s\d/]*CC(?![A-Z])", re.IGNORECASE)
 TIED = re.compile(r"[\s\d/]*(?:RND|CHF|CT|FLT?|FCT?|DEP|AP+R)(?![A-Z])", re.IGNORECASE)
 """Lines that hang on the ones beside them."""
 POLAR = re.compile(r"[\s\d/]*LP(?![A-Z])", re.IGNORECASE)
+FLOW = re.compile(
+    r"[\s\d/]*(?:BEGIN|END|LBL|FN\s*(?:9|1[0-2])\s*:|CALL\s+(?:LBL|PGM|SELECTED))", re.IGNORECASE
+)
 SIDE = re.compile(r"(?<![A-Z])R[LR](?![A-Z0-9])", re.IGNORECASE)
 WHOLE = re.compile(r"(?<![A-Z])P(?P<what>[AR])(?=[ \t]*[-+.,0-9Q])", re.IGNORECASE)
 
@@ -44,6 +47,9 @@ class InPlace(Programs):
         text = self.lines[line]
         if goes_on(text):
             return None
+        goes = PATH.match(text) is not None or TIED.match(text) is not None
+        if not goes and change.was == change.now:
+            return text
         hangs = self._is_tied(line) or POLAR.match(text) is not None
         if hangs and _is_still(change, text):
             return text
@@ -107,10 +113,10 @@ class InPlace(Programs):
         return self._in_several_lines
 
     def stands_alone(self, line: int) -> bool:
-        """Whether a line only goes somewhere: QL parameters of another program are not there."""
+        """Whether a line calls nothing, and is whole: QL of another program are not there."""
         text = self.lines[line]
         own = self.is_own(line) or not LOCAL.search(code(text))
-        return own and PATH.match(text) is not None and not goes_on(text)
+        return own and FLOW.match(text) is None and not goes_on(text)
 
     def depths(self) -> list[tuple[int, int]]:
         """Return where labels are called, and left."""

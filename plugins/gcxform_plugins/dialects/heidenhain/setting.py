@@ -14,12 +14,13 @@ from gcxform_plugins.dialects.heidenhain.holes import HOLES, PATTERNS, TAP
 from gcxform_plugins.dialects.heidenhain.parameters import FN, SETS
 from gcxform_plugins.dialects.heidenhain.words import HEAD
 
-SAID = re.compile(r"(?:PATTERN|SEL\s+PGM|FPOL|QS?(?=[0-9]))(?![A-Z])", re.IGNORECASE)
+SAID = re.compile(r"(?:PATTERN|SEL\s+PGM|FPOL|TRANS|QS?(?=[0-9]))(?![A-Z])", re.IGNORECASE)
 """What sets by itself what its text says."""
 LOCAL = re.compile(r"QL[0-9]", re.IGNORECASE)
 CENTRE = re.compile(r"CC(?![A-Z])", re.IGNORECASE)
 READS = frozenset((18, 28))
-PECKS = 1
+IN_LINES = frozenset((1, 7, 8, 9, 10))
+"""Cycles that are told in several statements, of which the last may have a block."""
 TARGET = re.compile(r"(?:FN\s*\d+\s*:(?:\s*SYSREAD|\s*TABREAD)?\s*)?(Q[LRS]?)\s*\d", re.IGNORECASE)
 STEPS = re.compile(r"CC[ \t]*$|(?<![A-Z])I[XYZ]", re.IGNORECASE)
 
@@ -50,7 +51,7 @@ def _kept(text: str, lines: list[str]) -> list[str]:
         found = PARAMETER.finditer(" ".join(lines).upper())
         return [f"Q{each[1]} = {each[2] or each[3]}" for each in found if each[2] or each[3]]
     if cycle is not None:
-        return lines if int(cycle[1]) in {*HOLES, TAP, PECKS} else []
+        return lines if int(cycle[1]) in {*HOLES, TAP, *IN_LINES} else []
     if re.match(r"QL[0-9]", text, re.IGNORECASE) or SAID.match(text):
         return lines
     return lines if CENTRE.match(text) and not STEPS.search(text) else []
