@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 from gcxform_plugins.dialects.heidenhain.cycles import DEFINED, PARAMETER
 from gcxform_plugins.dialects.heidenhain.holes import HOLES, PATTERNS, TAP
+from gcxform_plugins.dialects.heidenhain.kept_cycles import KEPT
 from gcxform_plugins.dialects.heidenhain.parameters import FN, SETS
 from gcxform_plugins.dialects.heidenhain.words import HEAD
 
@@ -51,7 +52,7 @@ def _kept(text: str, lines: list[str]) -> list[str]:
         found = PARAMETER.finditer(" ".join(lines).upper())
         return [f"Q{each[1]} = {each[2] or each[3]}" for each in found if each[2] or each[3]]
     if cycle is not None:
-        return lines if int(cycle[1]) in {*HOLES, TAP, *IN_LINES} else []
+        return lines if int(cycle[1]) in {*HOLES, TAP, *KEPT, *IN_LINES} else []
     if re.match(r"QL[0-9]", text, re.IGNORECASE) or SAID.match(text):
         return lines
     return lines if CENTRE.match(text) and not STEPS.search(text) else []
