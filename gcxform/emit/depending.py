@@ -11,6 +11,7 @@ import numpy as np
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.dialect import run_alike
+from gcxform.emit.bored_places import bores_beside
 from gcxform.emit.manner import Believed, Task
 from gcxform.emit.positions import Positions
 from gcxform.emit.same_rows import EXACT, SameRows
@@ -21,6 +22,8 @@ from gcxform.system.arrays import Flags, Small
 
 STORES = "store-home"
 PLACED = ("place", "motion")
+UNCORRECTED = "a place that no pass has corrected"
+LED = "before it, lead there by a move that is corrected: by one that names X, Y and Z"
 
 
 class Depending:
@@ -167,7 +170,7 @@ class Depending:
         for line in np.flatnonzero(flag("calls", shape) | macros).tolist():
             if why := self._finds_other(line):
                 message = f"this call, whose program is not known, would find {why}"
-                hint = "leave out the pass that changes this"
+                hint = LED if why == UNCORRECTED else "leave out the pass that changes this"
                 if macros[line]:
                     message = f"{self._macro_codes(line)}, which may run a macro, would find {why}"
                     hint = self._inert(line)
@@ -178,6 +181,8 @@ class Depending:
         now, old, manner = self.path.blocks, self.original.blocks, self.task.manner
         if manner.compensates and self._cuts(line):
             return "errors of the machine that its own moves do not make up for"
+        if manner.compensates and bores_beside(self.task, self.believed, line):
+            return UNCORRECTED
         stays = EXACT + manner.promised + manner.rounding(bool(now.inch[line]))
         if not manner.compensates and self._stands_elsewhere(line, stays):
             return "other places of the axes"

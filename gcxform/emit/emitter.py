@@ -17,6 +17,7 @@ import numpy as np
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.code_translation import HOME
+from gcxform.emit.bored_places import led_behind
 from gcxform.emit.centres import Centres
 from gcxform.emit.codewords import WAY_HOME
 from gcxform.emit.copying import Copying
@@ -346,6 +347,7 @@ class _Job:
             believed.exact = exact
             believed.said = np.array(self.copying.said_exactly()[-1])
             believed.stands = self.presets.standing(len(self.path) - 1)
+        believed.led = led_behind(self.task, believed)
         if len(self.pieces.line):
             believed.motion = int(stated.motion.after[-1])
             believed.feed = float(stated.feed.after[-1])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import cached_property
 from typing import NoReturn
@@ -34,6 +34,7 @@ class Manner:
     foreign_cycles  the numbers of those that have because the target has not the same
     promised  mm; how far the passes may be off, which a tap may use up
     compensates  positions become commands for a machine with errors, or the other way round
+    spares    which rapids passes leave to the machine, each as it says that
     curves    whether splines of weights and knots were read as curves, and became lines
     open_place   whether a setting that is not known decides if a cycle drills that names no place
     said      what the user says of codes of the source
@@ -47,6 +48,7 @@ class Manner:
     expands: bool = False
     promised: float = 0.0
     compensates: bool = False
+    spares: tuple[Callable[[Toolpath], Flags], ...] = ()
     curves: bool = False
     open_place: bool = False
     said: Saying | None = None
@@ -100,7 +102,7 @@ class Believed:
     `level`: from where the canned cycle in force has begun, along its axis; nan: there is none, or
     it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
     `aside`: how far (mm) it stands from where it shall be, after a tap. `stands`: its position, to
-    the last bit in those axes of `said`.
+    the last bit in those axes of `said`. `led`: a move has led there that passes have corrected.
     """
 
     position: Floats
@@ -117,6 +119,7 @@ class Believed:
     tapping: bool = False
     aside: float = 0.0
     stands: Floats = field(default_factory=lambda: np.zeros(0))
+    led: bool = False
 
     @classmethod
     def at_start(cls, manner: Manner, position: Floats) -> Believed:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from gcxform.catalogue.remedies import either, put_before
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import UsageError
 from gcxform.plugin.registry import default_registry
+from gcxform.system.arrays import Flags
 from gcxform.toolpath.facts import (
     AT_READING,
     AXIS_POSITIONS,
@@ -16,6 +17,7 @@ from gcxform.toolpath.facts import (
     TIP_POSITIONS,
     Fact,
 )
+from gcxform.toolpath.path import Toolpath
 
 
 def facts_at_reading(passes: Sequence[Pass]) -> frozenset[Fact]:
@@ -41,6 +43,11 @@ def compensates(passes: Sequence[Pass]) -> bool:
     before, after = facts_at_reading(passes), facts_after(passes)
     moved = {TIP_POSITIONS, AXIS_POSITIONS}
     return before & moved == after & moved and (COMPENSATED in before) != (COMPENSATED in after)
+
+
+def spared_by(passes: Sequence[Pass]) -> tuple[Callable[[Toolpath], Flags], ...]:
+    """Return how passes say which rapids they leave to the machine."""
+    return tuple(step.demands.spares for step in passes if step.demands.spares is not None)
 
 
 def expands_cycles(passes: Sequence[Pass]) -> bool:

@@ -42,7 +42,7 @@ from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
 from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
-from gcxform.pipeline.chain import check_chain, compensates, expands_cycles, facts_after
+from gcxform.pipeline.chain import check_chain, compensates, expands_cycles, facts_after, spared_by
 from gcxform.pipeline.own_language import check_target, target_of, writes_back
 from gcxform.pipeline.reasons import Told
 from gcxform.plugin.registry import dialect_of
@@ -226,7 +226,8 @@ class Plan:
         rule = self.source.cycle_rule
         open_place = rule is not None and rule.place_is_open(self.machine_reading.control)
         compensating = compensates(self.path_passes)
-        return replace(manner, promised=promised, compensates=compensating, open_place=open_place)
+        manner = replace(manner, compensates=compensating, open_place=open_place)
+        return replace(manner, promised=promised, spares=spared_by(self.path_passes))
 
     @property
     def read_as(self) -> type[Dialect]:

@@ -33,6 +33,7 @@ class Blocks(Contours):
     """Turns the lines of a SINUMERIK into blocks of words.
 
     feed_open  a cycle with feeds of its own has been, and F has not been programmed again
+    feed_other  of those one was written as moves: what is written may have another feed in force
     spindle    M3 or M4, as it turns, or nothing;  speed: the S in force
     left_out   the names of what goes along to the same control, and is not said to another one
     calls_kept those of cycles that are called as they stand
@@ -40,7 +41,7 @@ class Blocks(Contours):
     corners    G450 or G451, as it was said;  around: KONT is in force
     """
 
-    feed_open = around = False
+    feed_open = feed_other = around = False
     spindle = speed = corners = owed = ""
 
     grammar = ("gcxform_grammars", "siemens")
@@ -100,6 +101,7 @@ class Blocks(Contours):
             self.refuse("a tap that does not come back to where the tool is known to stand", item)
         self.at = self.line + len(LINES)
         self.motion, self.said, self.along, self.feed_open = OTHER, CODE, None, True
+        self.feed_other = True
         codes = self.distance_code(Line(), False)
         return [" ".join([*tap.number, *codes, f"G{CODE} Z{tap.bottom} K{tap.pitch}"])]
 
@@ -111,6 +113,7 @@ class Blocks(Contours):
     def _check_feed(self, line: Line) -> None:
         """Refuse a cut behind a cycle with feeds of its own, until F is programmed again."""
         self.feed_open &= not line.feed or line.dwell is not None
+        self.feed_other &= self.feed_open
         cuts = (line.motion or self.motion) != "0" and line.alone is None and line.pole is None
         if self.feed_open and cuts and (line.axes or line.centres or line.named):
             message = "which feed is in force behind a cycle with its own is not known"
@@ -230,7 +233,7 @@ class Blocks(Contours):
             self.refuse(OF_WHICH, None, "write T and M6 before")
         self.check_plane(None)
         self.check_offset(None)
-        if self.feed_open and not hole.own_feed:
+        if (self.feed_other if hole.kept else self.feed_open) and not hole.own_feed:
             self.refuse(
                 "which feed is in force behind a cycle with its own is not known", None, FEED
             )
@@ -247,6 +250,7 @@ class Blocks(Contours):
             yield " ".join([*([] if k else self.distance_code(Line(), False)), *words])
         self.said, self.feed_open = "0", hole.own_feed
         self.along = None
+        self.feed_other = hole.own_feed
 
     def _kept_hole(self, hole: Drilling) -> Iterator[str]:
         """Yield the block of a cycle that stays as it stands, with the level at which it ends."""
@@ -258,6 +262,8 @@ class Blocks(Contours):
                 self.in_place[self.line] = UNITS
         if [word for word in words if word[0] != hole.axis]:
             self.refuse("a cycle that stays as it stands, in a frame that tilts")
+        if self.frame != Frame():
+            self.in_place[self.line] = UNITS
         yield from self.distance_code(Line(), False)
         ends = [word if "." in word else f"{word}." for word in words]  # else increments, perhaps
         code = PATH if hole.cuts else HOLE

@@ -29,7 +29,9 @@ COMPUTED = frozenset(("expression", "flow", "system", "array"))
 SLASH = re.compile(r"\A[ \t]*/[0-9]?")
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
 DIGITS = re.compile("[0-9]+")
-CYCLES = re.compile(r"CYCLE8[0-9]+|HOLES[12]|WORKPIECE", re.IGNORECASE)
+CYCLES = re.compile(
+    r"CYCLE[678][0-9]+|HOLES[12]|POCKET[1-4]|SLOT[12]|LONGHOLE|WORKPIECE", re.IGNORECASE
+)
 HANDED_ON = re.compile(rf"(?:{CYCLES.pattern})[ \t]*\((?:[^\"A-Z]|\"[^\"]*\")*[A-Z]", re.IGNORECASE)
 """Cycles that are handed on what is not a plain number, and their like."""
 BRACKETS = str.maketrans("()\x01", "[] ")
@@ -151,6 +153,8 @@ class Computing(Deciding):
             if {*found.axes} & {*LINEAR} and (self.following or self.comp or self.drilling):
                 self.refuse("this leads axes elsewhere under TRAORI, MCALL or compensation")
             self.lose_axes(found.axes)
+            if {*found.axes} & {*LINEAR}:
+                self.place.lose(self.moved_inside(found.axes))
             number = next((f"N{i.numbers[0]} " for i in items if i.name == "N"), "")
             return [f"{number}{gx.Speller.along(text)}"]
 

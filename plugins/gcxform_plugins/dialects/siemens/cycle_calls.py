@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 import gcxform as gx
@@ -12,7 +11,7 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import MILLING
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR
 from gcxform_plugins.dialects.siemens.reading import WHY, Statements
-from gcxform_plugins.dialects.siemens.structure import code
+from gcxform_plugins.dialects.siemens.structure import HEAD, code
 
 
 class CycleCalls(Statements):
@@ -92,6 +91,8 @@ class CycleCalls(Statements):
         return cycles.kept_path(name, given, axis, self.text_of(item))
 
     def _is_label(self, name: str) -> bool:
-        """Whether a text names a line of the program."""
-        named = re.compile(rf"(?<![A-Z0-9_]){re.escape(name)}[ \t]*:(?!=)", re.IGNORECASE)
-        return any(named.search(code(line)) for line in self.lines)
+        """Whether a text names lines of the program: a label, the number of a block, or two."""
+        named = {each.strip().upper() for each in name.split(":")}
+        heads = (HEAD.match(code(line)) for line in self.lines)
+        said = ((head["label"] or "", f"N{head['number']}") for head in heads if head)
+        return any(label.upper() in named or number in named for label, number in said)

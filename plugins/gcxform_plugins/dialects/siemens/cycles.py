@@ -26,6 +26,7 @@ ABSOLUTE = ("2", "12")
 """AMODE where a depth is absolute, by its ones."""
 DIGITS = re.compile(r"[0-9]{1,7}")
 QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
+WORDY = re.compile(r"[A-Z_]", re.IGNORECASE)
 NO_RETRACT, PLAIN_MODE = "0", re.compile(r"[0-9]*")
 
 
@@ -51,7 +52,7 @@ class Drilling:
 
     steps     code, level and feed of each move at a place: 0 rapid, 1 at the feed, nothing for the
               one in force; code 4 is a dwell, of seconds
-    own_feed  it has feeds of its own, and which is in force behind it is not known
+    own_feed  it has feeds of its own: behind one that is read which is in force is not known
     kept      the call, where it stays as it stands: it ends at the level of its one step, if any
     cuts      it stays, and moves in the plane as well, where no manual tells
     """
@@ -118,9 +119,11 @@ def kept_path(name: str, given: Sequence[str], axis: str, text: str) -> Drilling
     Those of a known list of arguments end at RTP (Cycles 11.02, chapter 3); of others nothing is
     known but that they return modes and frames as they were (1.4).
     """
+    if any(WORDY.search(each) for each in given if not each.startswith('"')):
+        raise CycleError("which contour it takes, or how, is in a variable of the control")
     ends = name.startswith(("POCKET", "SLOT", "LONGHOLE"))
     steps = (("", _number(given[0], "RTP"), ""),) if ends else ()
-    return Drilling(axis, steps, False, text, True)
+    return Drilling(axis, steps, True, text, True)
 
 
 class Levels(NamedTuple):

@@ -160,9 +160,11 @@ By passes that change positions (`volumetric`, `cutter-comp`) of these only such
 | what stays | what is known behind it |
 |---|---|
 | CYCLE84, 840, 86, 87, 88, and 81 to 89 as they are not read; with MCALL too | it ends at RTP |
+| those, behind a rapid that no pass corrects (Z is not known) | refused |
 | POCKET, SLOT, LONGHOLE, CYCLE60 to 64, 70 to 79, 802, 899 | X, Y and F are lost, or Z as well |
 | those, where positions are compensated: their own ways would not be | refused |
-| AXN, a contour between labels of the program, a frame that tilts | refused |
+| AXN, a contour of labels or numbers of the program, a frame that tilts | refused |
+| any of them in a frame, where the program is written anew | refused: frames are gone there |
 | SETAL, SETMS, M2=3, S2=, STARTFIFO, DISPLOF, SBLOF | all |
 | FL[X]=, ACC[X]=, LIMS=, G25, G26 | all; they stand in their place alone |
 | SPOS | A, B and C are lost: the spindle may be one of them |

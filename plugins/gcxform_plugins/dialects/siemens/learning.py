@@ -33,6 +33,7 @@ MODES = (
         "fed",
         "feed_mode",
         "feed_open",
+        "feed_other",
         "orientation",
     ),
     *("following", "stopped", "decides", "perhaps"),

@@ -72,7 +72,8 @@ FEED_MODES = frozenset(("93", "94", "95"))
 STATE = (
     *("motion", "said", "plane", "work", "unit", "steps", "said_steps", "said_centres"),
     *("following", "comp", "changed", "tool", "waiting", "edge", "drilling", "once"),
-    *("spindle", "speed", "fed", "feed_mode", "pole", "polar", "feed_open", "orientation"),
+    *("spindle", "speed", "fed", "feed_mode", "pole", "polar", "orientation"),
+    *("feed_open", "feed_other"),
 )
 
 
