@@ -115,7 +115,7 @@ class OwnLines:
         if self.before.steps or self.now.steps or line in self.counting:
             return False
         if id(frame) not in self.frames:
-            named = {axis: Decimal(k) for k, axis in enumerate("XYZ")}
+            named = {axis: Decimal(k) for k, axis in enumerate("XYZ", 1)}  # 0 is no other mirrored
             inside = self.translator.inside(frame, named, {}, False, False)
             self.frames[id(frame)] = frame, frame is None or inside == named
         return self.frames[id(frame)][1]

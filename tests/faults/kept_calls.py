@@ -196,7 +196,7 @@ MUTATIONS = (
     ),
     _called("F is known behind a thread", "self.feed_lost = True", "pass", "kept-hole-feed"),
     _called(
-        "a cycle ends as high as Q200 says", "max(clear, high)", "clear", "own-lines-holes-kept"
+        "a cycle ends as high as Q200 says", "max(clear, high)", "clear", "own-lines-level-kept"
     ),
     _called(
         "what is called as it stands is written anew",
@@ -210,5 +210,26 @@ MUTATIONS = (
         "tied = number == RIGID and not self.reading.compensates",
         "tied = number == RIGID",
         f"{KLARTEXT}own-lines-holes-kept]",
+    ),
+    _kept(
+        "one has no number",
+        f"{SIEMENS}lines.py",
+        """{' '.join(asides)}" if "N" in values""",
+        """{' '.join(asides)}" if "P" in values""",
+        "kept-hole-numbered",
+    ),
+    _kept(
+        "X in a mirror is like X without",
+        "gcxform/emit/own_lines.py",
+        'enumerate("XYZ", 1)',
+        'enumerate("XYZ")',
+        "own-lines-mirrored",
+    ),
+    _kept(
+        "inches in a frame that turns are as coarse as mm",
+        f"{SIEMENS}frames.py",
+        'FINE = Decimal("1e-7")',
+        'FINE = Decimal("1e-6")',
+        "own-lines-inches-turned",
     ),
 )

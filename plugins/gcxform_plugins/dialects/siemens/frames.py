@@ -19,8 +19,8 @@ from gcxform_plugins.dialects.siemens.place import LINEAR, PlaceError
 Row = tuple[Decimal, Decimal, Decimal]
 ZERO, ONE = Decimal(0), Decimal(1)
 NEAR = Decimal("1e-12")
-FINE = Decimal("1e-6")
-"""mm: as fine are words written in a frame that turns."""
+FINE = Decimal("1e-7")
+"""mm or inches: as fine are words written in a frame that turns."""
 UNITS: tuple[Row, Row, Row] = ((ONE, ZERO, ZERO), (ZERO, ONE, ZERO), (ZERO, ZERO, ONE))
 ACROSS = {"XY": "Z", "ZX": "Y", "YZ": "X"}
 PLAIN = "let the CAM write positions without it"

@@ -16,7 +16,8 @@ VALUE = r"[ \t]*[-+]?[0-9.]+"
 IS = r"[ \t]*="
 AXIS = r"[ \t]*\[[ \t]*[A-Z][A-Z0-9]*[ \t]*\]"
 TELLS = re.compile(
-    rf"(?:SETAL[ \t]*\([^()]*\)|SETMS(?:[ \t]*\([0-9 \t]*\))?|(?:START|STOP)FIFO|FIFOCTRL"
+    rf"(?:SETAL[ \t]*\((?:[^()\"]|\"[^\"]*\")*\)|SETMS(?:[ \t]*\([0-9 \t]*\))?"
+    rf"|(?:START|STOP)FIFO|FIFOCTRL"
     rf"|SBLO[NF]|DISPLO[NF]|M[2-9]{IS}[ \t]*0*[345]|S[2-9]{IS}{VALUE})",
     re.IGNORECASE,
 )

@@ -48,6 +48,7 @@ MOVES_ZERO = frozenset(
 )
 AXES = frozenset("XYZABC")
 BLENDS = re.compile(r"G64[1-5]")
+KEPT_CALLS = frozenset(code[1:] for code in (HOLE, KEPT_PATH))
 SLASH = re.compile(r"[ \t]*(/[0-9]?)")
 OWN = (17, 128, 129, 9000, 9001)
 NO_LENGTH = "0"
@@ -87,8 +88,8 @@ class Lines(gx.Speller):
         if any(BLENDS.search(each) for each in asides if not each.upper().startswith("MSG")):
             words = [each for each in words if each != ("G", "64")]
         slash = SLASH.match(block)
-        if words and "".join(words[0]) in (HOLE, KEPT_PATH):
-            said = [*self._kept_call(dict(words)), *asides]
+        if dict(words).get("G") in KEPT_CALLS:
+            said = [*self._kept_call(dict(words), asides)]
         else:
             said = [*asides, *self._said(words)]
         found = [f"{slash[1]}{line}" if slash else line for line in said]
@@ -130,10 +131,11 @@ class Lines(gx.Speller):
         if any(word[0] != "N" for word in said):
             yield " ".join(said)
 
-    def _kept_call(self, values: dict[str, str]) -> Iterator[str]:
-        """Yield what has to be said before the call of a cycle that stays, and take its end."""
+    def _kept_call(self, values: dict[str, str], asides: list[str]) -> Iterator[str]:
+        """Yield the call of a cycle that stays, and before it an edge, and take its end."""
         if self.waits:
             yield self._edge
+        yield f"N{values['N']} {' '.join(asides)}" if "N" in values else " ".join(asides)
         self.height = Decimal(values["Z"]) if "Z" in values else None
         self.spindle, self.owed = "", True
 
