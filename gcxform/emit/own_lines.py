@@ -165,8 +165,11 @@ class OwnLines:
                 self.owed -= group
         return owed - said
 
-    def written_out(self, line: int, first: int, stop: int) -> Lines | None:
-        """Return an execution of a line as lines by themselves; None where they cannot be said."""
+    def written_out(self, line: int, first: int, stop: int, unit: frozenset[int]) -> Lines | None:
+        """Return an execution of a line as lines by themselves; None where they cannot be said.
+
+        `unit` are all lines that are written out: calls that one before them said stay with that.
+        """
         if self.translator.stands_alone(line):
             return self.spelled(line, first, stop)
         frame = self.source.frame_at(int(self.source.visits[first]))
@@ -174,7 +177,8 @@ class OwnLines:
         was, made = self._blocks(first, stop)
         for block in was:
             self.before.take(block)
-        said = self._said(frame, made)
+        calls = [k for k, block in enumerate(made) if self.translator.calls_behind(unit, block)]
+        said = self._said(frame, made, frozenset(calls))
         self.owed = self.translator.lasting
         return None if said is None else tuple(said)
 
@@ -271,9 +275,15 @@ class OwnLines:
         said = self._said(frame, made)
         return (*first, *said) if said else None
 
-    def _said(self, frame: object, made: Sequence[BlockWords]) -> list[str] | None:
-        """Return blocks in the words of the language; None where one cannot be said."""
-        inside = [self._inside(frame, block, self.now) for block in made]
+    def _said(
+        self, frame: object, made: Sequence[BlockWords], left: frozenset[int] = frozenset()
+    ) -> list[str] | None:
+        """Return blocks in the words of the language; None where one cannot be said.
+
+        Those that are `left`, by number, another line has said already.
+        """
+        found = [self._inside(frame, block, self.now) for block in made]
+        inside = [block for k, block in enumerate(found) if k not in left]
         if any(block is None for block in inside):
             return None
         self.speller.met([[block.text.encode("latin-1")] for block in inside if block is not None])

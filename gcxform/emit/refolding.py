@@ -118,12 +118,13 @@ class _Refolding:
         stop = bisect_left(self.runs, unit.end + 1, first, key=itemgetter(0))
         runs = {run[0]: run for run in self.runs[first:stop]}
         made: list[tuple[str, int]] = []
+        own = frozenset(map(int, walk.lines[unit.begin : unit.end + 1]))
         for visit in range(unit.begin, unit.end + 1):
             line = int(walk.lines[visit])
             said, run = self.translator.sets(line), runs.get(visit)
             if said is None:
                 raise refusal(self.source, line, SETS)
-            texts = () if run is None else lines.written_out(*run[1:])
+            texts = () if run is None else lines.written_out(*run[1:], own)
             if texts is None:
                 raise refusal(self.source, line, UNSAID)
             if run is not None and self.translator.stands_alone(line):

@@ -8,10 +8,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
-from gcxform.flow.block_words import DISTANCES, MOTIONS, At, Change, Worded
+from gcxform.flow.block_words import DISTANCES, MOTIONS, At, BlockWords, Change, Worded
 from gcxform.flow.line_shapes import LineShapes
 from gcxform.flow.speller import Speller
 
@@ -76,6 +76,11 @@ class LineWriting(LineShapes):
         """
         del frame, before, steps, bends
         return named
+
+    def calls_behind(self, lines: Collection[int], block: BlockWords) -> bool:
+        """Whether a block of lines is a call that one before them has said, for all that move."""
+        del lines, block
+        return False
 
     def loops(self) -> list[tuple[int, int]]:
         """Return the first and the last line, from 0, of each loop that its last line ends."""

@@ -232,4 +232,18 @@ MUTATIONS = (
         'FINE = Decimal("1e-6")',
         "own-lines-inches-turned",
     ),
+    _kept(
+        "a line says what MCALL has said",
+        f"{SIEMENS}in_place.py",
+        "if called is None or not {HOLE, PATH} & {*block.codes}:",
+        "if called:",
+        "own-lines-pattern-kept",
+    ),
+    _kept(
+        "what a subprogram calls MCALL has said",
+        "gcxform/emit/refolding.py",
+        "own = frozenset(map(int, walk.lines[unit.begin : unit.end + 1]))",
+        "own = frozenset((unit.first,))",
+        "own-lines-pattern-kept",
+    ),
 )

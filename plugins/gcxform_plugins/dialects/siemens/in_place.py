@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
 from gcxform_plugins.dialects.siemens.computing import COMPUTED
+from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
 from gcxform_plugins.dialects.siemens.going_along import HEAD
 from gcxform_plugins.dialects.siemens.learning import Learning
@@ -23,6 +24,7 @@ STEPPED = re.compile(  # it begins with letters that may be looked for one by on
     r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
     r"|(?<=[Gg])(?<![A-Za-z0-9_][Gg])[ \t]*0*91(?![0-9.]))"
 )
+CALLED_CYCLE = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 NUMBER = re.compile(r"N[0-9]+[ \t]+")
 GLUED = re.compile(r"[0-9.][A-Z]", re.IGNORECASE)
 """Words without a blank between: only the grammar tells them from names with a number in them."""
@@ -82,6 +84,14 @@ class InPlace(Learning):
     ) -> v.At | None:
         """Return words as they count in a frame; None where that hangs on what is not known."""
         return words_inside(frame, named, before, steps, bends)
+
+    def calls_behind(self, lines: Collection[int], block: v.BlockWords) -> bool:
+        """Whether a block is the call of a cycle that a line of MCALL says, and none of these."""
+        called = CALLED_CYCLE.search(" ".join(block.comments))
+        if called is None or not {HOLE, PATH} & {*block.codes}:
+            return False
+        says = re.compile(rf"(?<![A-Z0-9_]){called[0]}[ \t]*\(", re.IGNORECASE)
+        return not any(says.search(code(self.lines[line])) for line in lines)
 
     def margins(self) -> tuple[int, int]:
         """Return the first line that is no comment and no header, and the one behind the last."""
