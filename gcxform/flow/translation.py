@@ -77,6 +77,8 @@ class Translator(LineWriting):
         self.loses: set[str] = set()
         """Axes, and F for the feed, that are lost before the next block: it is then not known where
         they are, or what is in force."""
+        self.loses_behind: dict[int, str] = {}
+        """Axes that are lost behind all blocks of an execution of a line, by its number."""
         self.again: set[int] = set()
         """Lines that may be executed again, as only the machine knows: they have to stay."""
         self.stay: frozenset[int] = frozenset()

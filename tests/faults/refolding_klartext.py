@@ -172,7 +172,7 @@ MUTATIONS = (
     _own(
         "a cycle that is defined where lines are written out is lost",
         SETTING,
-        "{*HOLES, TAP, *IN_LINES}",
+        "{*HOLES, TAP, *KEPT, *IN_LINES}",
         "IN_LINES",
         f"{CASES}-loop]",
     ),

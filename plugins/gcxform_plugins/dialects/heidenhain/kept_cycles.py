@@ -57,7 +57,7 @@ class KeptCycles(Datums):
         self.feed_lost = True
         self.moved.add("Z")
         if number in BESIDE:
-            self.loses |= {*"XY"}
+            self.loses_behind[self.visit] = "XY"
             self.lost |= dict.fromkeys("XY", self.line + 1)
             self.place = {axis: at for axis, at in self.place.items() if axis not in "XY"}
         return [f"{HOLE} Z{end} {gx.Speller.aside(f'CYCL DEF {number} {said}')}"]
