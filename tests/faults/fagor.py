@@ -581,4 +581,11 @@ MUTATIONS = (
         "False",
         f"{CASE}whole-switched-off]",
     ),
+    Mutation(
+        "fagor: each centre of an arc is written from where the arc starts",
+        "plugins/gcxform_plugins/dialects/fagor/lines.py",
+        "return self.placed and bool(given)",
+        "return False",
+        "tests/test_corpus.py::test_case[dialects/across/centres-for-fagor]",
+    ),
 )

@@ -18,7 +18,7 @@ CODES = {
     "G21": "G71",
     "G61": "G7",
     "G64": "G5",
-    **dict.fromkeys(("G80", "G91.1", "G98", "G99", "G43", "G49", "G4"), ""),
+    **dict.fromkeys(("G80", "G90.1", "G91.1", "G98", "G99", "G43", "G49", "G4"), ""),
 }
 """Codes by another name, or by none: where nothing else is read, nothing has to be said."""
 SAME = tables.PLAIN | tables.WORK | tables.COMP | {"G90", "G91"}
@@ -27,6 +27,7 @@ CORNERS = frozenset(("G61", "G64"))
 SEMI_ROUNDED = "G50"
 LONGEST = 14  # characters of the name of a program [Q 45]
 ENDS = ("M2", "M30")
+ONE_CENTRE = "a centre from the work zero by one word, and what the other one is there"
 STEPPED = "steps of Z behind another tool length: whether they make up for it is not certain"
 
 
@@ -38,6 +39,7 @@ class Lines(gx.Speller):
     waits   M6 or a place of the machine has been, and D has not yet: it is said before a move
     bare    D0 was said last;  shifted: D was, and no absolute Z since;  steps: G91 is in force
     over    the program has ended;  headed: its name was heard
+    placed  centres of arcs count from the work zero, and not from where an arc starts
     """
 
     def __init__(self, name: str, inch: bool) -> None:
@@ -46,7 +48,7 @@ class Lines(gx.Speller):
         super().__init__(bare[:LONGEST], inch)
         self.tool = self.in_spindle = self.length = "0"
         self.waits = self.over = self.bare = self.chosen = self.steps = self.shifted = False
-        self.headed = False
+        self.headed = self.placed = False
 
     def opening(self) -> list[str]:
         """Return the first line; one of this control may have had none."""
@@ -83,9 +85,22 @@ class Lines(gx.Speller):
         if "G4" in names:
             yield f"G4 K{_plain(values.pop('P', '0'))}"
         said = [*self._words(words, "G4" in names)]
+        if self._is_placed(names, values):
+            said.insert(said[0][0] == "N", "G6")
         if any(word[0] != "N" for word in said):
             yield " ".join(said)
         self.over |= not {*ENDS}.isdisjoint(names)
+
+    def _is_placed(self, names: list[str], values: dict[str, str]) -> bool:
+        """Whether a block has a centre from the work zero: the code for that is for one block.
+
+        Raises UnspeakableError.
+        """
+        self.placed = "G90.1" in names or (self.placed and "G91.1" not in names)
+        given = values.keys() & {*"IJK"}
+        if self.placed and len(given) == 1:
+            raise gx.UnspeakableError(ONE_CENTRE)
+        return self.placed and bool(given)
 
     def _tooled(self, names: list[str], values: dict[str, str]) -> Iterator[str]:
         """Yield the lines of T with M6, and of D for a length. Raises UnspeakableError."""
