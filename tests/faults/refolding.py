@@ -14,6 +14,7 @@ UNROLLING = "gcxform/emit/unrolling.py"
 TRANSLATION = "gcxform/flow/translation.py"
 SETTING = "plugins/gcxform_plugins/dialects/siemens/setting.py"
 WORDS = "plugins/gcxform_plugins/dialects/siemens/words_moved.py"
+MOVED = "plugins/gcxform_plugins/dialects/shared/words_moved.py"
 COMPARED = "tests/test_refolded.py::test_what_came_back_is_read_and_compared"
 CASES = "tests/test_corpus.py::test_case[dialects/siemens/own-lines"
 
@@ -88,7 +89,7 @@ MUTATIONS = (
     ),
     _own(
         "words that an arc had stay in its lines",
-        WORDS,
+        MOVED,
         "self.straightened = self.was.bends and not self._same_arc()",
         "self.straightened = False",
         f"{CASES}-cut]",
@@ -96,8 +97,8 @@ MUTATIONS = (
     _own(
         "words beside IC are positions",
         WORDS,
-        '("IC" if self.change.steps else "AC") if ways else ""',
-        '""',
+        '("IC" if self.change.steps else "AC") if {"AC"',
+        '("AC") if {"AC"',
         f"{CASES}-steps]",
     ),
     _own(

@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 
+from gcxform_plugins.dialects.shared.words import text_of as text_of
+
 LINEAR, ROTARY = "XYZ", "ABC"
 TURN = Decimal(360)
 
@@ -21,13 +23,6 @@ class PlaceError(Exception):
         self.code = code
         self.message = message
         self.hint = hint
-
-
-def text_of(value: Decimal) -> str:
-    """Return a number as blocks have it: no exponent."""
-    text = format(value, "f")
-    text = text.rstrip("0").rstrip(".") if "." in text else text
-    return "0" if text in ("-0", "") else text
 
 
 class Place:
