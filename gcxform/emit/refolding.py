@@ -121,7 +121,7 @@ class _Refolding:
         own = frozenset(map(int, walk.lines[unit.begin : unit.end + 1]))
         for visit in range(unit.begin, unit.end + 1):
             line = int(walk.lines[visit])
-            said, run = self.translator.sets(line), runs.get(visit)
+            said, run = self.translator.sets(line, visit), runs.get(visit)
             if said is None:
                 raise refusal(self.source, line, SETS)
             texts = () if run is None else lines.written_out(*run[1:], own)

@@ -37,16 +37,16 @@ IN_LINES = frozenset(("NO_CYCLES", "WORKPIECE_FRAME"))
 
 def counting_lines(translator: Translator) -> frozenset[int]:
     """Return the lines, from 0, with words that count from where an axis stands."""
-    lines = translator.lines
+    lines, counted = translator.lines, frozenset(translator.counted)
     if translator.stepped is None:
-        return frozenset(k for k, line in enumerate(lines) if translator.counts(line))
+        return counted | {k for k, line in enumerate(lines) if translator.counts(line)}
     text = translator.uncommented("\n".join(lines))
     places = [match.end() for match in translator.stepped.finditer(text)]
     if not places:
-        return frozenset()
+        return counted
     ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
     found = {bisect_left(ends, place) for place in places}
-    return frozenset(line for line in found if translator.counts(lines[line]))
+    return counted | {line for line in found if translator.counts(lines[line])}
 
 
 def respelled(

@@ -1,8 +1,9 @@
 """Which lines of a program in a language of its own are written out, with what is executed in them.
 
 Those are the smallest: the call of a subprogram of which a line becomes another each time, or the
-loop around it, by lines that are executed in one go. A loop that its last line ends goes whole.
-Lines that are called from elsewhere as well stay, and the call in question is written out.
+loop around it, by lines that are executed in one go. A loop that its last line ends goes whole, and
+so does what else begins with one line and ends with another, where one of these goes. Lines that
+are called from elsewhere as well stay, and the call in question is written out.
 """
 
 from __future__ import annotations
@@ -52,12 +53,13 @@ class Walk:
         self.source, self.translator = source, source.translator
         self.lines = source.executed_lines()
         own = np.zeros(len(source.lines) + 1, np.bool_)
-        own[[k for k in range(len(source.lines)) if self.translator.is_own(k)]] = True
+        own[[k for k in range(len(source.lines)) if self.translator.in_main(k)]] = True
         self.own = np.flatnonzero(own[self.lines] & (self.lines >= 0))
-        """The executions of lines of the program itself."""
+        """The executions of lines of the main program."""
         self.depth = self._depths()
         """How deep in calls of its own lines they are executed (own,)."""
         self.loops = self.translator.loops()
+        self.branches = self.translator.branches()
         self._executed = Executed(np.arange(len(self.own)), self.lines[self.own])
         self._less: dict[int, Ints] = {}
         self._levels: dict[int, Executed] = {}
@@ -116,8 +118,13 @@ class Walk:
         return Unit(first, last, int(self.own[level.at[begin]]), int(stop), why)
 
     def _crossed(self, first: int, last: int) -> list[tuple[int, int]]:
-        """Return the loops that lines stand in, or begin or end."""
-        return [each for each in self.loops if each[0] <= last and first <= each[1]]
+        """Return the loops that lines stand in, or begin or end, and what they divide."""
+        parted = [
+            (each[0], each[-1])
+            for each in self.branches
+            if any(first <= line <= last for line in each)
+        ]
+        return [*parted, *(each for each in self.loops if each[0] <= last and first <= each[1])]
 
     def together(self, units: Iterable[Unit]) -> list[Unit]:
         """Return units of which none has lines of another one, in the order of their lines."""

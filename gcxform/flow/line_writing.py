@@ -98,9 +98,16 @@ class LineWriting(LineShapes):
         """
         return []
 
-    def sets(self, line: int) -> list[str] | None:
-        """Return what a line sets besides its blocks, as lines that say it; None where none can."""
-        del line
+    def branches(self) -> list[tuple[int, ...]]:
+        """Return the lines, from 0, that begin, part and end each structure that is no loop."""
+        return []
+
+    def sets(self, line: int, visit: int) -> list[str] | None:
+        """Return what an execution of a line sets besides its blocks, as lines that say it.
+
+        None where none can. `visit` is the number of the execution.
+        """
+        del line, visit
         return []
 
     def margins(self) -> tuple[int, int]:

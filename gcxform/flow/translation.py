@@ -69,6 +69,8 @@ class Translator(LineWriting):
         """What holds besides where the program is written anew, and not in its own lines."""
         self.in_place: dict[int, str] = {}
         """Lines that stand in no program that is written anew, and why."""
+        self.counted: set[int] = set()
+        """Lines, from 0, that count from where an axis stands, as was found when they were read."""
         self.jumps: list[tuple[int, int]] = []
         """Each execution of a line that does not stand behind the one before, with that line."""
         self._behind = -1
@@ -124,6 +126,11 @@ class Translator(LineWriting):
         """Return the blocks behind the last line."""
         return ()
 
+    def count_on(self) -> None:
+        """Note that a line counts from where an axis stands, if that may become another place."""
+        if self.reading.asides:
+            self.counted.add(self.line)
+
     def told_anew(self, sentence: str) -> None:
         """Tell what holds where the program is written, and not in its own lines."""
         (self.anew if self.reading.asides else self.assumed)[sentence] = None
@@ -150,6 +157,10 @@ class Translator(LineWriting):
     def is_own(self, line: int) -> bool:
         """Whether a line may change: one of a file that is called may not, as others call it."""
         return line < self.own
+
+    def in_main(self, line: int) -> bool:
+        """Whether a line is of the main program, and of none that it calls, in its file or not."""
+        return self.is_own(line)
 
     def at_end(self) -> None:
         """Come to the end of a file: that of the program is its end."""

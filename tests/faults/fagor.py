@@ -86,7 +86,7 @@ MUTATIONS = (
     ),
     Mutation(
         "fagor: what says how near to a corner is left out for the same control",
-        BLOCKS,
+        COMPUTING,
         "        if not self.reading.asides:\n            return []\n        text = code",
         "        if item:\n            return []\n        text = code",
         f"{CASE}compensated-with-asides]",
@@ -569,7 +569,7 @@ MUTATIONS = (
     ),
     Mutation(
         "fagor: what is switched off does not go along",
-        BLOCKS,
+        COMPUTING,
         "        if not self.reading.asides:\n            return []\n        text = code",
         "        if 'OFF' in item.name:\n            return []\n        text = code",
         f"{CASE}whole-switched-off]",

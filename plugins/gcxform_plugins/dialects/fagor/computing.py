@@ -18,7 +18,7 @@ import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.fagor.arithmetic import COUNTS, FAGOR, NOT_CERTAIN, holds
 from gcxform_plugins.dialects.fagor.drilling import Drilling
-from gcxform_plugins.dialects.fagor.structure import StructureError
+from gcxform_plugins.dialects.fagor.structure import StructureError, code
 
 COMPUTED = frozenset(("expression", "assignment", "flow", "call"))
 OWN = re.compile(r"V\.[PS]\.[A-Z0-9_]+")
@@ -27,6 +27,11 @@ LOCALS = range(100)
 SET_IT = "set it to a number in the program before"
 UNSET = "what is written sets no parameter: what runs behind it, or calls it, may not read them"
 LARGEST = 1e9
+TEXTS = re.compile(r'("[^"]*")')
+NAMED = re.compile(r"(?<![A-Z0-9_.])(?:P[0-9]+|V\.[PS]\.[A-Z0-9_]+)", re.IGNORECASE)
+INDIRECT = re.compile(r"(?<![A-Z0-9_.])P[P\[]", re.IGNORECASE)
+INCHES = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*70(?![0-9.])", re.IGNORECASE)
+SAY_IT = "write a number in its place"
 DECIMALS = 9  # of a computed word: far below what the control resolves
 Node = Tree[Token]
 
@@ -175,6 +180,35 @@ class Computing(Drilling):
         """Take what decides or calls."""
         raise NotImplementedError
 
+    def _along(self, item: gx.Item) -> list[str]:
+        """Return the block of a statement that goes along where all is written anew; or none.
+
+        It has the values of its parameters. Raises InputError for what computes otherwise.
+        """
+        if not self.reading.asides:
+            return []
+        text = code(self.lines[self.line])
+        if "CONTERROR" in text.upper() and any(map(INCHES.search, self.lines)):
+            self.refuse("a contour error beside G70 and moves that are written anew", item)
+        parts = TEXTS.split(text[text.index("#") :].strip())
+        for k in range(0, len(parts), 2):
+            parts[k] = NAMED.sub(lambda found: self._value_of(found[0], item), parts[k])
+            rest = INDIRECT.search(parts[k])
+            if rest is not None:
+                self.refuse(f"{rest[0]} in a statement that goes along as it stands", item, SAY_IT)
+        return [gx.Speller.along("".join(parts))]
+
+    def _value_of(self, name: str, item: gx.Item) -> str:
+        """Return what a parameter is worth in a statement. Raises InputError."""
+        name = f"P{int(name[1:])}" if name[1].isdigit() else name.upper()
+        try:
+            value = self.values.read(name)
+        except v.NoValueError as why:
+            raise self.refusal(why.code, why.message, item, why.hint) from None
+        if value < 0:
+            self.refuse(f"{name} is below 0 in a statement that goes along", item, SAY_IT)
+        return written(value)
+
     def _word(self, node: Any) -> str:
         """Return a computed word with its number. Raises NoValueError."""
         parts = [c for c in node.children if not _is(c, "EQUALS")]
@@ -194,7 +228,7 @@ class Computing(Drilling):
         if self.reading.asides and (
             name.startswith("V.S.") or (name[0] == "P" and int(name[1:]) not in LOCALS)
         ):
-            self.assumed[UNSET] = None
+            self.told_anew(UNSET)
         try:
             found = self.values.value(value)
             if str(sign) != "=":

@@ -1,7 +1,8 @@
 """Fagor CNC 8065 and 8070, mill (`blocks.py` makes blocks of it).
 
-It is written from itself, by passes that keep positions: lines that are not changed keep their
-bytes, and what is refused below is then kept as it stands, with all that is lost behind it.
+It is written from itself: lines that are not changed keep their bytes. By passes that keep
+positions what is refused below is kept as it stands, with all that is lost behind it; by others it
+is refused (`in_place.py`).
 
 Sources: [M] programming manual of the 8070, Ref. 1709, by page; [V02] that of its software V02.0x;
 [Q] quick reference of the 8065; [55] programming manual of the 8055 M, V02.2x; [post] the open
@@ -61,6 +62,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | G81 Z I | a hole at each place: `drilling.py`; with K refused; other cycles refused [55 162] |
 | G80, G98, G99 | end it; behind each hole the initial plane, the reference plane [55 162] |
 | the same control, line by line | G81 and what is under it stay |
+| the same control, other places | these change; with other levels the holes are written as moves |
 | G92, G93, G96 | refused: another zero, a time in place of the feed, a speed that follows an axis |
 | G10 to G14, G72 | mirror and scale: refused |
 | G43, G44, G49 | are of the 8055: refused |
@@ -78,7 +80,10 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | `#CS`, `#ACS`, `#CSROT`, `#TOOL ORI`, `#SELECT ORI` | inclined planes: refused, but for OFF |
 | `#TRAFO ON` | of ISG and Beckhoff; there D names a tool, and G8 and G9 are no arcs: refused |
 | `#HSC`, `#ROUNDPAR`, `#SLOPE`, `#FLUSH`, `#MSG` | move nothing, and are left out |
-| these and G50, where moves are written anew for a Fagor | they go along; G61 is refused |
+| these and G50, where moves become others for a Fagor | they go along; G61 is refused |
+| `[CONTERROR P1]` there | goes along with the value of P1, where lines are written out |
+| the same control, other places: R Q | stay, or become X and Y; one word alone always does |
+| P100 and more, V.S. there | set as before; only a program that is written whole sets none |
 | `#TIME`, and all else behind `#` | refused |
 | `;`, `( )`, `(` to the end of the line | comments |
 | NR, #RPT, #MCALL, #EXEC | refused |
@@ -97,7 +102,7 @@ from typing import ClassVar
 
 import gcxform as gx
 from gcxform import vocabulary as v
-from gcxform_plugins.dialects.fagor.programs import Programs
+from gcxform_plugins.dialects.fagor.in_place import InPlace
 
 
 class Fagor(gx.Dialect):
@@ -105,7 +110,7 @@ class Fagor(gx.Dialect):
 
     name = "fagor"
     axes = "XYZABCUVW"
-    translator = Programs
+    translator = InPlace
     codes: ClassVar[Mapping[str, gx.Code]] = {
         **v.ISO,
         "G95": gx.Code("feed-mode"),

@@ -56,11 +56,17 @@ class Call:
 
 
 class Flow(Computing):
-    """Executes what decides and calls."""
+    """Executes what decides and calls.
+
+    sharing  behind which executions of a line the parameters are those of the program, or not
+    made     what was set by executions where they are not
+    """
 
     def __init__(self, *given: object) -> None:
         super().__init__(*given)
         self.calls: list[Call] = []
+        self.sharing: list[tuple[int, bool]] = []
+        self.made: dict[int, dict[str, float | None]] = {}
         self.counting: dict[int, tuple[float, float]] = {}
         self._structures: dict[int, Structure] = {}
         self.local, self.at, self.wrong = self._sections()
@@ -314,14 +320,25 @@ class Flow(Computing):
         kind = "own" if way == "#PCALL" else str(self.reading.control.get("subroutine-locals", ""))
         mine = {name: value for name, value in self.known.items() if _is_local(name)}
         self.calls.append(Call(self.at, lines, kind, mine, frozenset(self.doubtful)))
+        self._share()
         if kind != "shared":
             self.known = {n: value for n, value in self.known.items() if n not in mine} | given
             self.doubtful = set() if kind == "own" else {*mine, *self.doubtful}
         self._go(lines.start)
 
+    def _share(self) -> None:
+        self.sharing.append((self.visit, all(call.kind == "shared" for call in self.calls)))
+
+    def _set(self, node: Any) -> str:
+        name = super()._set(node)
+        if self.sharing and not self.sharing[-1][1]:
+            self.made.setdefault(self.visit, {})[name] = self.known[name]
+        return name
+
     def _return(self) -> None:
         """Go back to what has called."""
         call = self.calls.pop()
+        self._share()
         if call.kind != "shared":
             inside = {name: value for name, value in self.known.items() if _is_local(name)}
             self.known = {n: value for n, value in self.known.items() if n not in inside}

@@ -129,6 +129,7 @@ class Polar(Blocks):
         if item is not None and not (steps or item.kind == "incremental"):
             value = float(item.numbers[0])
             return value if letter == "R" else _within(value)
+        self.count_on()
         if last is None:
             self.refuse(f"{letter} counts from a place that is no polar one", at, "write R and Q")
         before = last[letter == "Q"]
@@ -178,6 +179,7 @@ class Polar(Blocks):
             self.refuse("a coordinate and an angle, but of a line in G17", item)
         if not {"X", "Y"} <= at.keys() or self.incremental != self._steps(codes):
             self.refuse("an angle from a place that is not known", item, NOT_KNOWN)
+        self.count_on()
         value = float(named[axis].numbers[0])
         step = value if steps else value - float(at[axis])
         along, across = around(float(item.numbers[0]))

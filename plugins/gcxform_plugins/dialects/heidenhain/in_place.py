@@ -122,8 +122,9 @@ class InPlace(Programs):
         """Return where labels are called, and left."""
         return self.deep
 
-    def sets(self, line: int) -> list[str] | None:
+    def sets(self, line: int, visit: int) -> list[str] | None:
         """Return the lines that say what a statement sets besides its blocks."""
+        del visit
         last = line
         while goes_on(self.lines[last]) and last + 1 < len(self.lines):
             last += 1

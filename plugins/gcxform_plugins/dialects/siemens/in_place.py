@@ -107,11 +107,12 @@ class InPlace(Learning):
             return []
         return [(part.first, part.last) for part in parts if part.kind != "IF"]
 
-    def sets(self, line: int) -> list[str] | None:
+    def sets(self, line: int, visit: int) -> list[str] | None:
         """Return the assignments of a line, or the frame that it sets.
 
         None where variables are in them that the program has not, or that it defines there.
         """
+        del visit
         items, own = self.items(line), self.is_own(line)
         flow = next((item.name for item in items if item.kind == "flow"), "")
         if flow:
