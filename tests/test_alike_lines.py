@@ -85,10 +85,18 @@ def test_a_form_is_filled_and_told() -> None:
     assert now == {"X": 7, "Y": Decimal("-2.5")}
 
 
-def test_words_of_a_comment_are_none() -> None:
+@pytest.mark.parametrize("comment", ["; X{}", "(X{})", "(X{} "])
+def test_words_of_a_comment_are_none(comment: str) -> None:
+    one, other = comment.format(9), comment.format(8)
     known = AlikeLines(Worded())
-    known.learn("X5 ; X9", "X5 (X9)", "X5 Y3. (X9)", "X5 Y3 ; X9")
-    assert known.spelled("X7 ; X8", "X7 (X8)", "X7 Y3. (X8)") == "X7 Y3 ; X8"
+    known.learn(f"X5 {one}", "X5 (X9)", "X5 Y3. (X9)", f"X5 Y3 {one}")
+    assert known.spelled(f"X7 {other}", "X7 (X8)", "X7 Y3. (X8)") == f"X7 Y3 {other}"
     before, now = dict[str, Decimal](), dict[str, Decimal]()
     known.settle(before, now)
     assert (before, now) == ({"X": 7}, {"X": 7, "Y": 3})
+
+
+def test_words_behind_a_comment_are_not_taken_for_it() -> None:
+    known = AlikeLines(Worded())
+    known.learn("Z5 (A) X1", "X1 Z5 (A)", "X1 Z6. (A)", "Z6 (A) X1")
+    assert known.spelled("Z5 (A) X2", "X2 Z5 (A)", "X3 Z6. (A)") is None

@@ -12,7 +12,12 @@ from seeds_kit import LONG, shares
 from test_fagor_reference import CONTROL, OPEN, START, Writer
 
 import gcxform as gx
+from gcxform.diagnostics import SpellingError
+from gcxform.flow.straightened import written_out
+from gcxform.flow.translated import Translated
 from gcxform.modal.state import Reading
+from gcxform.plugin.registry import default_registry
+from gcxform.proof.refolded import check_refolded
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.source import Source
 
@@ -95,3 +100,49 @@ def test_a_stamp_and_its_seal_stand_in_the_lines(ends: str, last: str, tmp_path:
     read = stamps_in(Source.of_bytes(twice.text))
     assert (len(read.stamps), len(read.seals), read.fits) == (2, 1, True)
     assert twice.certificate.written_out == []
+
+
+SAID = """%PART
+N10 G71 G17 G90 G54 G94 G5
+P1=60 P101=3
+G0 X10 Y10 Z50 ; THERE
+#HSC ON [CONTERROR P101]
+G1 XP1 Y40I F100 M8
+R20 Q45
+Q90
+G0 G98 G81 X5 Z40 I30
+G80
+M30
+"""
+WRONG = [
+    ("X10 Y10", "X10 Y11", "an end"),
+    ("; THERE", "; HERE", "comments"),
+    ("P101=3", "P101=3 P2=1", "another value"),
+    ("P1=60 P101=3", "P1=60 P101=4", "goes along"),
+    ("CONTERROR P101", "CONTERROR P1", "goes along"),
+    ("G80", "P101=4", "another value"),
+    ("Q90", "Q91", "an end"),
+    ("G98", "G99", "an end"),
+    ("I30", "I31", "an end"),
+    ("M8", "M9", "M8 is M9"),
+    ("G94 G5", "G94 G7", "G64 is G61"),
+    ("F100", "F101", "feed"),
+    ("R20 Q45", "R20 Q45 P101=4", "goes along|another value"),
+]
+
+
+@pytest.mark.parametrize(("right", "wrong", "why"), WRONG)
+def test_what_came_back_is_read_and_compared(right: str, wrong: str, why: str) -> None:
+    dialect = default_registry().dialect("fagor")
+    target = type("Copy", (dialect,), {"__module__": __name__})
+    pipeline = gx.Pipeline(dialect, target, (), Reading(control=CONTROL))
+    source = written_out(
+        Source.of_bytes(SAID.encode()), dialect, pipeline.machine_reading, pipeline.target
+    )
+    assert isinstance(source, Translated)
+    reading = replace(pipeline.reading_of_output(pipeline.machine_reading), crosses=True)
+    given = Source.of_bytes(SAID.encode())
+    check_refolded(given, source.text, source, pipeline.target, reading)
+    other = Source.of_bytes(SAID.replace(right, wrong).encode())
+    with pytest.raises(SpellingError, match=why):
+        check_refolded(other, source.text, source, pipeline.target, reading)

@@ -120,7 +120,9 @@ class Worded:
     """
 
     line: re.Pattern[str] = re.compile(
-        rf"(?P<head>)(?P<words>(?:[ \t]*[NGXYZABCFMS]{VALUE})+)(?=[ \t]*(?:;|\Z))", re.IGNORECASE
+        rf"(?P<head>)(?P<words>(?:[ \t]*[NGXYZABCFMS]{VALUE})+)"
+        r"(?=[ \t]*(?:;|(?:\([^()]*\)?[ \t]*)?\Z))",
+        re.IGNORECASE,
     )
     signed: bool = False
 

@@ -31,6 +31,13 @@ MUTATIONS = (
         f"{CASE}-polar]",
     ),
     _fagor(
+        "a step from nowhere is written out",
+        "gcxform/emit/own_lines.py",
+        "if each.positions), 0) if was == made else 0",
+        "if not each.positions), 0) if was == made else 0",
+        f"{CASE}-steps]",
+    ),
+    _fagor(
         "polar words stay beside X and Y",
         WORDS,
         "if self.polar and word.name in POLAR:",
