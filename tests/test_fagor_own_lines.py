@@ -125,7 +125,7 @@ WRONG = [
     ("G98", "G99", "an end"),
     ("I30", "I31", "an end"),
     ("M8", "M9", "M8 is M9"),
-    ("G94 G5", "G94 G7", "G64 is G61"),
+    ("G94 G5", "G94 G7", "is G61"),
     ("F100", "F101", "feed"),
     ("R20 Q45", "R20 Q45 P101=4", "goes along|another value"),
 ]

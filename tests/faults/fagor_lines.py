@@ -101,6 +101,20 @@ MUTATIONS = (
         f"{CASE}-levels]",
     ),
     _fagor(
+        "the centre of a turn has its places the other way round",
+        f"{PLACE}lines.py",
+        'zip("QIJ", "RXY", strict=True)',
+        'zip("QIJ", "RYX", strict=True)',
+        f"{CASE}-turned]",
+    ),
+    _fagor(
+        "a pole that is computed is lost with its line",
+        SETTING,
+        "return [_without_head(code(text))] if alone else None",
+        "return []",
+        f"{CASE}-turned]",
+    ),
+    _fagor(
         "half of what begins with $IF is written out",
         "gcxform/emit/unrolling.py",
         "if any(first <= line <= last for line in each)",
@@ -131,8 +145,8 @@ MUTATIONS = (
     _fagor(
         "what a subroutine shares is not set",
         SETTING,
-        'return [" ".join(said)] if said else []',
-        "return []",
+        '*([" ".join(said)] if said else [])',
+        "",
         f"{CASE}-file]",
     ),
     _fagor(

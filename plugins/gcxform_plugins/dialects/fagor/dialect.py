@@ -46,7 +46,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | an arc with Q | about its I J, or about the pole; Q360 in G91 is a circle [V02 101] |
 | `X30 Q45` | a line at an angle, to a coordinate [M 70]; with G2 and G3 refused |
 | G73 Q I J, G73 | a turn about I J, or the part zero; none [V02 139]; of a turned one: refused |
-| behind it | both axes of the plane are told first, by a line |
+| behind it | both axes of the plane are told first, by a line; so it is written, too |
 | G8, G9 | tangent arc, arc through three points: refused |
 | `G4 K2` | 2 seconds, alone in its block [post]; on an 8055 hundredths; other forms are refused |
 | G5, G7, G50, G61 | how corners are taken: G64, G61, G64, G64 of the blocks; G60 for one block |

@@ -15,7 +15,7 @@ from gcxform_plugins.dialects.fagor.computing import COMPUTED, rule_of
 from gcxform_plugins.dialects.fagor.drilling import DRILL, ENDS
 from gcxform_plugins.dialects.fagor.places import code_of
 from gcxform_plugins.dialects.fagor.programs import Programs
-from gcxform_plugins.dialects.fagor.setting import assigned, counted, stated
+from gcxform_plugins.dialects.fagor.setting import counted, said_of
 from gcxform_plugins.dialects.fagor.structure import LOOPS, Part, Structure, StructureError, code
 from gcxform_plugins.dialects.fagor.words_moved import blanked, line_moved, words_in
 
@@ -94,16 +94,13 @@ class InPlace(Programs):
     def sets(self, line: int, visit: int) -> list[str] | None:
         """Return what a line sets, as it says it; None where only a subroutine can say it."""
         items, text = self.items(line), self.lines[line]
-        kinds = {item.kind for item in items}
-        if not kinds & COMPUTED:
-            said = stated(items, text)
-            return [said] if said else []
         at = bisect_left(self.sharing, visit, key=itemgetter(0))
         shared = not at or self.sharing[at - 1][1]
+        kinds = {item.kind for item in items}
         if "flow" in kinds:
             return self._counts_on(line, shared)
-        made = None if shared else self.made.get(visit, {})
-        return assigned(self.tree_of(text).children, text, made)
+        nodes = self.tree_of(text).children if kinds & COMPUTED else ()
+        return said_of(items, nodes, text, None if shared else self.made.get(visit, {}))
 
     def _counts_on(self, line: int, shared: bool) -> list[str] | None:
         """Return how $FOR or $ENDFOR counts, as a line."""

@@ -81,7 +81,8 @@ class Lines(gx.Speller):
             raise gx.UnspeakableError(STEPPED, gx.put_before("absolute"))
         self.shifted &= "Z" not in values
         if "G68" in names or "G69" in names:
-            raise gx.UnspeakableError("a turn is not written")
+            yield self._turned(names, values)
+            return
         if "G4" in names:
             yield f"G4 K{_plain(values.pop('P', '0'))}"
         said = [*self._words(words, "G4" in names)]
@@ -90,6 +91,14 @@ class Lines(gx.Speller):
         if any(word[0] != "N" for word in said):
             yield " ".join(said)
         self.over |= not {*ENDS}.isdisjoint(names)
+
+    def _turned(self, names: list[str], values: dict[str, str]) -> str:
+        """Return the line of a turn about a point, or of none. Raises UnspeakableError."""
+        on = "G68" in names
+        if values.keys() - {*"GN"} != {*("XYR" if on else "")} or len(names) > len(values):
+            raise gx.UnspeakableError("a turn beside other words, or about no point")
+        about = (f" {word}{_plain(values[of])}" for word, of in zip("QIJ", "RXY", strict=True))
+        return f"G73{''.join(about)}" if on else "G73"
 
     def _is_placed(self, names: list[str], values: dict[str, str]) -> bool:
         """Whether a block has a centre from the work zero: the code for that is for one block.

@@ -10,39 +10,40 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from lark import Tree
+
 import gcxform as gx
 from gcxform_plugins.dialects.fagor.computing import LOCALS, rule_of, written
 from gcxform_plugins.dialects.fagor.places import code_of
+from gcxform_plugins.dialects.fagor.spelling import HEAD
 from gcxform_plugins.dialects.fagor.structure import code
 
 PARAMETER = re.compile(r"(?<![A-Z0-9_.])P[ \t]*([0-9]*)", re.IGNORECASE)
 SIGNED = re.compile(r"([-+]?)[ \t]*([0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
 STAND = frozenset(("G30", "G98", "G99"))
 """Codes of which no block says anything, and that lines behind them hang on."""
+Made = Mapping[str, float | None]
 
 
-def stated(items: Sequence[gx.Item], text: str) -> str:
-    """Return the codes of a line that no block has: the pole of it, and where holes end."""
-    said = {code_of(item) for item in items} & STAND
-    if "G30" in said:
-        return code(text).strip()
-    return " ".join(sorted(said))
-
-
-def assigned(
-    nodes: Sequence[Any], text: str, made: Mapping[str, float | None] | None
+def said_of(
+    items: Sequence[gx.Item], nodes: Sequence[Any], text: str, made: Made | None
 ) -> list[str] | None:
-    """Return the assignments of a line; None where they cannot be said.
+    """Return what a line sets, as lines; None where it cannot be said.
 
-    `made` is what they set where only a subroutine can say them by its parameters.
+    `nodes` are those of a line that computes. `made` is what it sets where only a subroutine can
+    say that by its parameters.
     """
+    codes = {code_of(item) for item in items} & STAND
     said = [_part(text, node) for node in nodes if rule_of(node) == "assignment"]
+    if "G30" in codes:
+        alone = not said and not (made is not None and is_local(code(text)))
+        return [_without_head(code(text))] if alone else None
     if made is not None and any(map(is_local, said)):
         found = [(name, _short(value)) for name, value in made.items() if not is_local(name)]
         if not all(short for _, short in found):
             return None
         said = [f"{name}={short}" for name, short in found]
-    return [" ".join(said)] if said else []
+    return [*sorted(codes), *([" ".join(said)] if said else [])]
 
 
 def counted(head: Any, text: str, begins: bool, shared: bool) -> list[str] | None:
@@ -68,6 +69,11 @@ def is_local(text: str) -> bool:
     return any(not number or int(number) in LOCALS for number in numbers)
 
 
+def _without_head(text: str) -> str:
+    head = HEAD.match(text)
+    return text[head.end() if head else 0 :].strip()
+
+
 def _short(value: float | None) -> str:
     """Return a value as a number; nothing where that would be another one, or is not known."""
     text = "" if value is None else written(value)
@@ -75,5 +81,6 @@ def _short(value: float | None) -> str:
 
 
 def _part(text: str, node: Any) -> str:
-    place = getattr(node, "meta", node)
-    return code(text[place.start_pos : place.end_pos]).strip()
+    if not isinstance(node, Tree):
+        return str(node)
+    return code(text[node.meta.start_pos : node.meta.end_pos]).strip()
