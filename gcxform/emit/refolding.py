@@ -130,6 +130,8 @@ class _Refolding:
             if run is not None and self.translator.stands_alone(line):
                 said = []
             made += [(each, line) for each in (*said, *texts)]
+        if made:
+            made[0] = (self.translator.headed(unit.first, made[0][0]), made[0][1])
         for line in range(unit.first, unit.last + 1):
             self.new[line] = tuple(made) if line == unit.first else ()
 

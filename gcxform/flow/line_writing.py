@@ -110,6 +110,14 @@ class LineWriting(LineShapes):
         del line, visit
         return []
 
+    def headed(self, line: int, text: str) -> str:
+        """Return the first of the lines that are written out in the place of a line and others.
+
+        It has to be found where the line was: by its number, or its label.
+        """
+        del line
+        return text
+
     def margins(self) -> tuple[int, int]:
         """Return the line, from 0, in front of which stamps go, and that of the seal."""
         return 0, len(self.lines)

@@ -122,6 +122,13 @@ MUTATIONS = (
         f"{CASE}-loop]",
     ),
     _fagor(
+        "what is written out has no number to jump to",
+        IN_PLACE,
+        'return f"{head[0].rstrip()} {text}" if head and head[0].strip() else text',
+        "return text",
+        f"{CASE}-loop]",
+    ),
+    _fagor(
         "lines of a subroutine are those of the program",
         IN_PLACE,
         "return self.begin <= line < self.own",

@@ -16,6 +16,7 @@ from gcxform_plugins.dialects.fagor.drilling import DRILL, ENDS
 from gcxform_plugins.dialects.fagor.places import code_of
 from gcxform_plugins.dialects.fagor.programs import Programs
 from gcxform_plugins.dialects.fagor.setting import counted, said_of
+from gcxform_plugins.dialects.fagor.spelling import HEAD
 from gcxform_plugins.dialects.fagor.structure import LOOPS, Part, Structure, StructureError, code
 from gcxform_plugins.dialects.fagor.words_moved import blanked, line_moved, words_in
 
@@ -49,6 +50,11 @@ class InPlace(Programs):
         for node in self.tree_of(self.lines[line]).children:
             yield gx.Item(rule_of(node), (), (), (node.meta.start_pos, node.meta.end_pos))
 
+    def headed(self, line: int, text: str) -> str:
+        """Return a text with the number and the labels of a line: jumps may lead there."""
+        head = HEAD.match(code(self.lines[line]))
+        return f"{head[0].rstrip()} {text}" if head and head[0].strip() else text
+
     # --- what belongs together ---
 
     def in_main(self, line: int) -> bool:
@@ -73,11 +79,11 @@ class InPlace(Programs):
 
     @cached_property
     def _holes(self) -> list[tuple[int, int]]:
-        """The first and the last line of holes that one cycle drills."""
+        """The first and the last line of holes that one cycle drills, in subroutines as well."""
         found, first = list[tuple[int, int]](), -1
-        for line in range(self.begin, self.own) if DRILLS.search(self._text) else ():
-            codes = {code_of(item) for item in self.items(line)}
-            if first >= 0 and codes & {DRILL, *ENDS}:
+        for line in range(self.own) if DRILLS.search(self._text) else ():
+            codes = {code_of(item) or item.kind for item in self.items(line)}
+            if first >= 0 and codes & {DRILL, "header", *ENDS}:
                 found.append((first, line - 1))
                 first = -1
             first = line if DRILL in codes else first
