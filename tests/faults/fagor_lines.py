@@ -33,8 +33,8 @@ MUTATIONS = (
     _fagor(
         "a step from nowhere is written out",
         "gcxform/emit/own_lines.py",
-        "if each.positions), 0) if was == made else 0",
-        "if not each.positions), 0) if was == made else 0",
+        "if was == made and ahead == leads:",
+        "if False:",
         f"{CASE}-steps]",
     ),
     _fagor(

@@ -184,7 +184,7 @@ MUTATIONS = (
         "nobody is told what a loop counted",
         PROOF,
         "if now.get(name, left) is not None",
-        "if now.get(name) is not None",
+        "if now.get(name, left) is None",
         f"{CASES}-loop]",
     ),
     _own(

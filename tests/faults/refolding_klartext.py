@@ -179,8 +179,8 @@ MUTATIONS = (
     _own(
         "statements before the last of a shift are lost",
         SETTING,
-        "{*HOLES, TAP, *IN_LINES}",
-        "{*HOLES, TAP}",
+        "{*HOLES, TAP, *KEPT, *IN_LINES}",
+        "{*HOLES, TAP, *KEPT}",
         f"{CASES}-frames]",
     ),
     _own(

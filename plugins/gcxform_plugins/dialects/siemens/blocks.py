@@ -258,8 +258,6 @@ class Blocks(Contours):
         for _, level, _ in hole.steps:
             self.place.absolute(hole.axis, level)
             words = self.outside(False, [hole.axis + level])
-            if words != [hole.axis + level]:
-                self.in_place[self.line] = UNITS
         if [word for word in words if word[0] != hole.axis]:
             self.refuse("a cycle that stays as it stands, in a frame that tilts")
         if self.frame != Frame():
