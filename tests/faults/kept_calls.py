@@ -246,4 +246,11 @@ MUTATIONS = (
         "own = frozenset((unit.first,))",
         "own-lines-pattern-kept",
     ),
+    _kept(
+        "CYCLE840 has a feed of its own",
+        f"{SIEMENS}cycles.py",
+        'own_feed = name == "CYCLE84"',
+        'own_feed = name.startswith("CYCLE84")',
+        "kept-tap-other-feed",
+    ),
 )

@@ -94,7 +94,8 @@ def kept_hole(name: str, given: Sequence[str], axis: str, text: str) -> Drilling
     """Return the hole of a cycle that is called as it stands. Raises CycleError.
 
     It moves along the axis across the plane, and ends at RTP over the place at which it was called;
-    CYCLE86 comes back there from where it has lifted the tool off (Cycles 11.02, 2.1).
+    CYCLE86 comes back there from where it has lifted the tool off (Cycles 11.02, 2.1). CYCLE840
+    taps at the feed in force where it has no encoder.
     """
     values = [*given, *[""] * MOST_GIVEN]
     along, plane = OF_CALL[name]
@@ -104,7 +105,7 @@ def kept_hole(name: str, given: Sequence[str], axis: str, text: str) -> Drilling
         raise CycleError("along which axis it moves is said behind its depth")
     if not plane and any(given[along + 1 :]):
         raise CycleError("what stands behind its axis is not known")
-    own_feed = name in ("CYCLE84", "CYCLE840")
+    own_feed = name == "CYCLE84"
     return Drilling(axis, (("", _number(given[0], "RTP"), ""),), own_feed, text)
 
 
