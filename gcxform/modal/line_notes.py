@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -117,6 +119,12 @@ class KeptCall(NamedTuple):
     def led(self) -> str:
         """The axes that are behind it where its block says."""
         return self.ends.removeprefix(AT) if self.ends.startswith(AT) else ""
+
+
+def call_of(calls: Sequence[KeptCall], line: int) -> KeptCall | None:
+    """Return the call of a line among some in order; None where it has none."""
+    at = bisect_left(calls, line, key=attrgetter("line"))
+    return calls[at] if at < len(calls) and calls[at].line == line else None
 
 
 BY_WAY = "way"

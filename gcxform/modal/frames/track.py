@@ -26,7 +26,7 @@ from gcxform.modal.frames.followed_tips import turned_tip
 from gcxform.modal.frames.planes import out_of_plane
 from gcxform.modal.frames.tool_lengths import LENGTH_STEP, length_moves
 from gcxform.modal.frames.transforms import turned_by
-from gcxform.modal.line_notes import WayHome
+from gcxform.modal.line_notes import WayHome, call_of
 from gcxform.modal.lines import LENGTHS, Lines
 from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
 from gcxform.modal.state import Modes
@@ -203,7 +203,7 @@ class Track:
 
     def _asked(self, act: Act, line: int) -> Asked:
         written, words, axes = self._said(act, line) if act.slots else (NOTHING, NOTHING, NOTHING)
-        modes, calls = self.modes, self.lines.kept_calls
+        modes, call = self.modes, call_of(self.lines.kept_calls, line)
         return Asked(
             act.code,
             words,
@@ -215,7 +215,7 @@ class Track:
             float(modes.tool[line]),
             self.dialect,
             self.lines.reading,
-            next((call.ends for call in calls if call.line == line), "") if calls else "",
+            "" if call is None else call.ends,
             lost=self.state.lost_once,
         )
 

@@ -15,7 +15,7 @@ from gcxform.diagnostics import Diagnostic, Severity
 from gcxform.dialect.dialect import EXTRUDER, INCH, LINEAR
 from gcxform.modal.frames.followed_tips import turned_tip
 from gcxform.modal.frames.track import LEFT, Track
-from gcxform.modal.line_notes import WayHome
+from gcxform.modal.line_notes import WayHome, call_of
 from gcxform.modal.meaning.calls import CALL
 from gcxform.modal.meaning.meaning import OWN_MOVES, Act
 from gcxform.modal.moves.blind_moves import note_way
@@ -217,8 +217,8 @@ def _called(track: Track, line: int) -> Own | None:
 
     How it gets there is not known, so that the block stays as it is. None for other calls.
     """
-    call = next(call for call in track.lines.kept_calls if call.line == line)
-    if not call.led:
+    call = call_of(track.lines.kept_calls, line)
+    if call is None or not call.led:
         return None
     place = list(track.frame.words_of(track.state.position.tolist()))
     words = _target(track, line)
