@@ -253,4 +253,11 @@ MUTATIONS = (
         'own_feed = name.startswith("CYCLE84")',
         "kept-tap-other-feed",
     ),
+    _kept(
+        "what goes along sets a variable as well",
+        f"{SIEMENS}in_place.py",
+        "if goes_along(bare_line(self.lines[line])) is not None:",
+        "if False:",
+        "along-in-a-loop",
+    ),
 )

@@ -11,7 +11,8 @@ from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
 from gcxform_plugins.dialects.siemens.computing import COMPUTED
 from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
-from gcxform_plugins.dialects.siemens.going_along import HEAD
+from gcxform_plugins.dialects.siemens.going_along import HEAD, goes_along
+from gcxform_plugins.dialects.siemens.going_along import bare as bare_line
 from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES
 from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, counted, said_of
@@ -119,6 +120,8 @@ class InPlace(Learning):
             return None if own and DEFINES.match(flow) else self._counts_on(line, own)
         if not any(item.kind in SETTING or item.name in FRAMES for item in items):
             return []
+        if goes_along(bare_line(self.lines[line])) is not None:
+            return []  # its block says so
         text = code(self.lines[line])
         return said_of(text, [*words_of(self.tree_of(text), text)], own)
 
