@@ -23,7 +23,7 @@ from gcxform.system.arrays import Flags, Small
 STORES = "store-home"
 PLACED = ("place", "motion")
 UNCORRECTED = "a place that no pass has corrected"
-LED = "before it, lead there by a move that is corrected: by one that names X, Y and Z"
+LED = "before it, lead there by a move that names X, Y and Z; where rapids are left alone by a cut"
 
 
 class Depending:
