@@ -99,6 +99,16 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | lines in brackets before BEGIN PGM | are none of the program | |
 | a number of more than 20 characters | refused | |
 | a file without END PGM, M2 or M30 | refused: it breaks off | |
+
+By passes that change positions such lines stand as they do, and in no program that is written anew:
+
+| what stands | what is known behind it |
+|---|---|
+| cycles 202, 204, 206, 209, 241; 200, 201, 203, 205, 240 if not read | Z, by Q203, Q200, Q204 |
+| cycle 207 | the same, where a machine is compensated; else it is read |
+| X and Y behind 202 and 204, which go beside the hole | are lost |
+| those, behind a rapid that no pass corrects (Z is not known) | refused |
+| FN 14, 19, 20, 26, 29, 37; FN 15, 16, 27, 38 of parameters; QR of many digits | all |
 """
 
 from __future__ import annotations
