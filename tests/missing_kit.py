@@ -33,6 +33,7 @@ ANSWERS: dict[str, Any] = {
     "inch-feeds": "inches",
     "for-end": "included",
     "subroutine-locals": "shared",
+    "mcall-in-subprograms": "acts",
     "motion-at-start": "G1",
     "section-repeats": "further",
     "tool-change-by": "M6",

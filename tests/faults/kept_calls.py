@@ -260,4 +260,11 @@ MUTATIONS = (
         "if False:",
         "along-in-a-loop",
     ),
+    _kept(
+        "MCALL that a subprogram ends is in force behind it",
+        f"{SIEMENS}calls.py",
+        "if self.drilling != call.drilling:",
+        "if False:",
+        "mcall-left-in-a-subprogram",
+    ),
 )

@@ -40,6 +40,9 @@ INDIRECT = re.compile(
 KIND = re.compile(r"[._](?:SPF|MPF)$", re.IGNORECASE)
 BY_PATH = "programs that are called by a path are those of that name in the folders of subprograms"
 OUTSIDE = frozenset(("sequence", "label"))
+MODAL = "mcall-in-subprograms"
+ACTS = "which may drill behind its moves, too"
+ACTS_HINT = f'{MODAL} = "acts" in [control], if it does; or write its moves in the program itself'
 
 
 class Calls(Computing):
@@ -108,8 +111,10 @@ class Calls(Computing):
         """Begin a subprogram. Raises InputError."""
         if len(self.calls) >= LEVELS or any(call.lines == lines for call in self.calls):
             self.refuse(f"{name} calls itself, or {LEVELS} calls are inside each other")
-        if self.drilling is not None or self.comp:
-            self.refuse(f"{name} is called under MCALL or compensation")
+        if self.comp:
+            self.refuse(f"{name} is called under compensation")
+        if self.drilling is not None and self.reading.control.get(MODAL) != "acts":
+            self.refuse(f"{name} is called under MCALL, {ACTS}", None, ACTS_HINT)
         self.look_for_tangents(self.lines[lines.start : lines.stop])
         if any(call.saved for call in self.calls):
             self.refuse(f"{name} is called in a subprogram that says SAVE")
@@ -121,7 +126,8 @@ class Calls(Computing):
         except v.NoValueError as why:
             raise self.refusal(why.code, why.message, None, why.hint) from None
         self.decides = True
-        self.calls.append(Call(lines, self.at, times, saved(self) if self.saving else None))
+        before = saved(self) if self.saving else None
+        self.calls.append(Call(lines, self.at, times, before, self.drilling))
         self.levels.append(level)
         self.at = lines.start
 
@@ -246,6 +252,8 @@ class Calls(Computing):
         call = self.calls[-1]
         if call.saved is not None:
             self._put_back(*call.saved)
+        if self.drilling != call.drilling:
+            self.refuse("a subprogram ends with another MCALL in force than it began with")
         call.times -= 1
         if call.times:
             self.at = call.lines.start

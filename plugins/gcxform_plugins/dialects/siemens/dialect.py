@@ -108,6 +108,7 @@ kept as it stands, with all that is lost behind it.
 | GOTOF GOTOB GOTO GOTOC, labels, N numbers | the nearest in the direction | PM |
 | CASE OF DEFAULT | by whole numbers, others are refused; on without a DEFAULT | PM |
 | a variable set and read in a word of one block | refused | [K] |
+| MCALL, and a subprogram | refused, but for `[control] mcall-in-subprograms = "acts"` | [K] |
 | REPEAT of a label before it | by `[control] section-repeats`, what P counts | [K] |
 | REPEAT of two labels, REPEATB, ENDLABEL, GOTOS, RET with a label | refused | [K] |
 | `$AA_IW[X]`, `$P_EP[X]` | where X stands; the first only behind STOPRE | [K] |
@@ -226,6 +227,7 @@ class Siemens(gx.Dialect):
         gx.Setting("motion-at-start", "siemens: motion before any code (MD20150)", ("G0", "G1")),
         gx.Setting("tool-change-by", "siemens: what changes a tool (MD22550)", ("T", "M6")),
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
+        gx.Setting("mcall-in-subprograms", "siemens: MCALL drills in subprograms", ("acts",)),
         gx.Setting("section-repeats", "siemens: what P of REPEAT counts", ("further", "in-all")),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )

@@ -37,13 +37,14 @@ NAME = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 class Call:
     """A subprogram that is executed: its lines, the line behind the call, how often it is due.
 
-    saved  what was in force before it, where its PROC says SAVE
+    saved  what was in force before it, where its PROC says SAVE;  drilling: the cycle of MCALL
     """
 
     lines: range
     back: int
     times: int = 1
     saved: Any = None
+    drilling: Any = None
 
 
 class Variables(Blocks):
