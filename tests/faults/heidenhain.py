@@ -1363,8 +1363,8 @@ MUTATIONS = (
     Mutation(
         "klartext: a hole counts from a parameter that is another one now",
         CYCLES,
-        "if key in self.refers or ",
-        "if ",
+        " or (n, key) in self.refers",
+        "",
         f"{WRITTEN}::test_parameters_of_a_cycle_are_those_of_the_program",
     ),
     Mutation(

@@ -267,4 +267,18 @@ MUTATIONS = (
         "if False:",
         "mcall-left-in-a-subprogram",
     ),
+    Mutation(
+        "kept calls: Q203 that is set behind the definition changes nothing",
+        f"{HEIDENHAIN}cycles.py",
+        "return LEVELS",
+        "return ()",
+        f"{KLARTEXT}kept-hole-level-set]",
+    ),
+    Mutation(
+        "kept calls: how high one ends hangs on its depth",
+        f"{HEIDENHAIN}cycles.py",
+        "return LEVELS",
+        "return (*LEVELS, 201)",
+        f"{KLARTEXT}kept-hole-level-of]",
+    ),
 )

@@ -225,4 +225,11 @@ MUTATIONS = (
         "if False}",
         f"{TESTS}::test_what_came_back_is_read_and_compared",
     ),
+    _own(
+        "what outlives the program a block says, or nobody",
+        PLACE,
+        "visit in self.unsaid",
+        "False",
+        f"{CASES}-outlives]",
+    ),
 )

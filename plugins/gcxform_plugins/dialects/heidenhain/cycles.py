@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -19,7 +19,7 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
-from gcxform_plugins.dialects.heidenhain.kept_cycles import KeptCycles
+from gcxform_plugins.dialects.heidenhain.kept_cycles import LEVELS, KeptCycles
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
@@ -54,8 +54,8 @@ class Cycles(KeptCycles):
         self.pecks: dict[int, Decimal] = {}
         self.cycle = 0
         self.bounded = False
-        self.refers: set[str] = set()
-        """The parameters that the values of the hole have been taken from."""
+        self.refers: set[tuple[int, str]] = set()
+        """Parameters of the hole, each with the one that its value has been taken from."""
         self.places: list[tuple[str, str]] = []
 
     def define(self, item: gx.Item) -> list[str]:
@@ -143,11 +143,18 @@ class Cycles(KeptCycles):
 
     def assigned(self, key: str) -> None:
         """Forget a cycle of which a parameter is set: whether it then counts is not known."""
-        hole = TAPPED if self.cycle == TAP else HOLES.get(self.cycle)
-        if hole is None:
-            return
-        if key in self.refers or (key[1:].isdigit() and int(key[1:]) in hole.needs):
+        counts = self._counting()
+        if any(key == f"Q{n}" or (n, key) in self.refers for n in counts):
             self.cycle = 0
+
+    def _counting(self) -> Iterable[int]:
+        """Return the parameters that blocks of the cycle in force hang on."""
+        if self.keeps(self.cycle):
+            return LEVELS
+        if self.cycle == TAP:
+            return TAPPED.needs
+        hole = HOLES.get(self.cycle)
+        return () if hole is None else (*hole.needs, *hole.zero, *hole.idle)
 
     def _value(self, item: gx.Item, text: str) -> str:
         match = LAST_VALUE.fullmatch(text)
@@ -188,7 +195,7 @@ class Cycles(KeptCycles):
             number, value, parameter = int(found[1]), found[2], found[3]
             if parameter:
                 value = self.parameter(parameter, item)
-                self.refers.add(key_of(parameter.lstrip("+- ")))
+                self.refers.add((number, key_of(parameter.lstrip("+- "))))
             if value:
                 told[number] = Decimal(plain(value))
             self.q[f"Q{number}"] = float(told[number]) if value else None
@@ -196,7 +203,7 @@ class Cycles(KeptCycles):
                 told[number] = RAPID
             elif found[4] == AUTO and number in FEEDS and self.tool_feed:
                 told[number] = Decimal(self.tool_feed)
-                self.refers.add(AUTO)
+                self.refers.add((number, AUTO))
         return told
 
     def told_lines(self) -> Iterator[str]:
@@ -230,7 +237,14 @@ class Cycles(KeptCycles):
             return self._tapped(item, self.hole)
         if self.cycle == 1:
             return self._pecked(item)
-        raise self.refusal("GX215", "no cycle that is known here has been defined", item)
+        raise self._no_cycle(item)
+
+    def _no_cycle(self, item: gx.Item) -> gx.InputError:
+        """Return the refusal of a call without a cycle, or one that is not certain now."""
+        if self.cycle or not self.hole:
+            return self.refusal("GX215", "no cycle that is known here has been defined", item)
+        message = "a parameter of the cycle was set behind its definition: it may count, or not"
+        return self.refusal("GX215", message, item, "define the cycle again before it is called")
 
     def _hole_or_kept(self, item: gx.Item) -> list[str]:
         """Return the blocks of a hole; the one of its cycle where that is not certain."""
@@ -317,7 +331,7 @@ class Cycles(KeptCycles):
         """Cycles 220 and 221: the cycle defined last at once, over and over."""
         self._check_cycle(item)
         if self.cycle not in HOLES:
-            raise self.refusal("GX215", "no cycle that is known here has been defined", item)
+            raise self._no_cycle(item)
         if told.keys() - {365} != {*PATTERNS[number]}:
             raise self.refusal("GX215", f"cycle {number} lacks a parameter, or has more", item)
         if told[301] != 1 or told.get(365) or told[204] < told[200] or not told[204]:

@@ -124,11 +124,10 @@ class InPlace(Programs):
 
     def sets(self, line: int, visit: int) -> list[str] | None:
         """Return the lines that say what a statement sets besides its blocks."""
-        del visit
         last = line
         while goes_on(self.lines[last]) and last + 1 < len(self.lines):
             last += 1
-        return said_of(self.lines[line : last + 1], self.is_own(line))
+        return said_of(self.lines[line : last + 1], self.is_own(line), visit in self.unsaid)
 
     def leaves(self) -> dict[str, object]:
         """Return Q and QR parameters: other programs may read them."""

@@ -83,7 +83,14 @@ class Formula(v.Evaluator):
 
 
 class Parameters(Labels):
-    """Sets Q parameters, and jumps by them."""
+    """Sets Q parameters, and jumps by them.
+
+    unsaid   executions of lines that set what outlives the program, and of which no block says it
+    """
+
+    def __init__(self, *program: Any) -> None:
+        super().__init__(*program)
+        self.unsaid: set[int] = set()
 
     @cached_property
     def grammar_of_formulas(self) -> Any:
@@ -149,6 +156,7 @@ class Parameters(Labels):
         if value is None or float(written(value)) != value:
             if self.reading.asides:
                 self.in_place[self.line] = f"{key}, which outlives the program, is set here"
+            self.unsaid.add(self.visit)
             return []
         return self.along(f"{key} = {written(value)}")
 

@@ -26,16 +26,17 @@ TARGET = re.compile(r"(?:FN\s*\d+\s*:(?:\s*SYSREAD|\s*TABREAD)?\s*)?(Q[LRS]?)\s*
 STEPS = re.compile(r"CC[ \t]*$|(?<![A-Z])I[XYZ]", re.IGNORECASE)
 
 
-def said_of(lines: Sequence[str], own: bool) -> list[str] | None:
+def said_of(lines: Sequence[str], own: bool, unsaid: bool = False) -> list[str] | None:
     """Return what a statement sets, given its lines; None where only its own program can say it.
 
-    `own`: it is one of the program that is written.
+    `own`: it is one of the program that is written; `unsaid`: it sets what outlives the program,
+    and no block says so.
     """
     first, *more = lines
     bare = first.partition(";")[0] if ";" in first else first
     goes_on = " ~" if more and "~" not in bare else ""
     text = HEAD.sub("", bare, 1).rstrip() + goes_on
-    said = _kept(text.rstrip("~ "), [text, *more])
+    said = _kept(text.rstrip("~ "), [text, *more], unsaid)
     if own or not said or not any(LOCAL.search(each) for each in said):
         return said
     target = TARGET.match(text)
@@ -43,9 +44,11 @@ def said_of(lines: Sequence[str], own: bool) -> list[str] | None:
     return [] if stays else None
 
 
-def _kept(text: str, lines: list[str]) -> list[str]:
+def _kept(text: str, lines: list[str], unsaid: bool) -> list[str]:
     """Return the lines that say again what a statement sets."""
     function, cycle = FN.fullmatch(text), DEFINED.fullmatch(text.upper())
+    if unsaid:
+        return lines
     if function is not None:
         return lines if int(function[1]) in {*SETS, *READS} and not _outlives(text) else []
     if cycle is not None and int(cycle[1]) in PATTERNS:
