@@ -6,12 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from refolded_kit import written_blocks
 
 import gcxform as gx
 from gcxform.diagnostics import SpellingError
-from gcxform.flow.straightened import written_out
-from gcxform.flow.translated import Translated
-from gcxform.plugin.registry import default_registry
 from gcxform.proof.refolded import check_refolded
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.source import Source
@@ -74,16 +72,6 @@ def test_each_line_has_the_line_that_it_is_for(tmp_path: Path) -> None:
     assert pieces == [6, 6, 6]
 
 
-def written_blocks(text: str) -> tuple[gx.Pipeline, Translated]:
-    dialect = default_registry().dialect("siemens")
-    target = type("Copy", (dialect,), {"__module__": __name__})
-    pipeline = gx.Pipeline(dialect, target, ())
-    source = Source.of_bytes(text.encode())
-    made = written_out(source, dialect, pipeline.machine_reading, pipeline.target)
-    assert isinstance(made, Translated)
-    return pipeline, made
-
-
 WRONG = [
     ("X10 Y10", "X10 Y11", "an end"),
     ("; THERE", "; HERE", "comments"),
@@ -97,7 +85,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("right", "wrong", "why"), WRONG)
 def test_what_came_back_is_read_and_compared(right: str, wrong: str, why: str) -> None:
-    pipeline, source = written_blocks(PROGRAM)
+    pipeline, source = written_blocks("siemens", PROGRAM)
     reading = replace(pipeline.reading_of_output(pipeline.machine_reading), crosses=True)
     given = Source.of_bytes(PROGRAM.encode())
     check_refolded(given, source.text, source, pipeline.target, reading)

@@ -7,15 +7,12 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from refolded_kit import written_blocks
 from test_refolded import compensating
 
-import gcxform as gx
 from gcxform.diagnostics import SpellingError
 from gcxform.emit.own_lines import OwnLines
 from gcxform.emit.unrolling import Unit, Walk
-from gcxform.flow.straightened import written_out
-from gcxform.flow.translated import Translated
-from gcxform.plugin.registry import default_registry
 from gcxform.proof.refolded import check_refolded
 from gcxform.stamps.comment import stamps_in
 from gcxform.syntax.source import Source
@@ -62,16 +59,6 @@ def test_a_stamp_and_its_seal_stand_within_the_program(
     assert twice.certificate.written_out == []
 
 
-def written_blocks(text: str) -> tuple[gx.Pipeline, Translated]:
-    dialect = default_registry().dialect("heidenhain")
-    target = type("Copy", (dialect,), {"__module__": __name__})
-    pipeline = gx.Pipeline(dialect, target, ())
-    source = Source.of_bytes(text.encode())
-    made = written_out(source, dialect, pipeline.machine_reading, pipeline.target)
-    assert isinstance(made, Translated)
-    return pipeline, made
-
-
 WRONG = [
     ("X+10 Y+10", "X+10 Y+11", "would not read"),
     ("IX+5", "IX+6", "would not read"),
@@ -98,7 +85,7 @@ WRONG = [
 
 @pytest.mark.parametrize(("right", "wrong", "why"), WRONG)
 def test_what_came_back_is_read_and_compared(right: str, wrong: str, why: str) -> None:
-    pipeline, source = written_blocks(PROGRAM)
+    pipeline, source = written_blocks("heidenhain", PROGRAM)
     reading = replace(pipeline.reading_of_output(pipeline.machine_reading), crosses=True)
     given = Source.of_bytes(PROGRAM.encode())
     check_refolded(given, source.text, source, pipeline.target, reading)
