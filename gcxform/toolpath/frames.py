@@ -68,6 +68,13 @@ class Frame:
         """Whether a plane of words, across an axis, is turned out of the axes of positions."""
         return self.matrix is not None and abs(abs(self.matrix[normal][normal]) - 1.0) > FLAT
 
+    def is_apart(self, axis: int) -> bool:
+        """Whether words of an axis, by number, are its positions but for a shift."""
+        if self.matrix is None or axis >= len(self.matrix):
+            return True
+        whole = range(len(self.matrix))
+        return all(self.matrix[axis][k] == self.matrix[k][axis] == float(k == axis) for k in whole)
+
     @cached_property
     def plain(self) -> bool:
         """Whether words are positions."""

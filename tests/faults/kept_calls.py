@@ -281,4 +281,18 @@ MUTATIONS = (
         "return (*LEVELS, 201)",
         f"{KLARTEXT}kept-hole-level-of]",
     ),
+    Mutation(
+        "kept calls: in turned coordinates nothing is known of an axis that stays as it is",
+        "gcxform/toolpath/frames.py",
+        "self.matrix[axis][k] == self.matrix[k][axis] == float(k == axis)",
+        "False",
+        f"{KLARTEXT}kept-hole-turned]",
+    ),
+    _kept(
+        "in turned coordinates X is where its word says",
+        "gcxform/toolpath/frames.py",
+        "self.matrix[axis][k] == self.matrix[k][axis] == float(k == axis)",
+        "True",
+        "along-turned",
+    ),
 )

@@ -238,9 +238,10 @@ def _target(track: Track, line: int) -> dict[str, float]:
     block = track.lines.table.shapes.grammar.parse(text)
     found = {word.address: nan for word in block.words if word.address in track.axes}
     sure = not (track.modes.incremental[line] or track.frame.polar or track.frame.diameter)
-    for axis, slot in meaning.call_slots if sure and track.frame.matrix is None else ():
+    for axis, slot in meaning.call_slots if sure else ():
         value = float(window.value[first + slot])
-        if axis in found and (window.decimals[first + slot] >= 0 or value == 0.0):
+        told = axis in found and track.frame.is_apart(track.axes.index(axis))
+        if told and (window.decimals[first + slot] >= 0 or value == 0.0):
             inch = track.modes.inch[line] and axis in LINEAR
             found[axis] = value * INCH if inch else value
     return found
