@@ -288,11 +288,11 @@ MUTATIONS = (
         "False",
         f"{KLARTEXT}kept-hole-turned]",
     ),
-    _kept(
-        "in turned coordinates X is where its word says",
+    Mutation(
+        "kept calls: in turned coordinates X is where its word says",
         "gcxform/toolpath/frames.py",
         "self.matrix[axis][k] == self.matrix[k][axis] == float(k == axis)",
         "True",
-        "along-turned",
+        "tests/test_corpus.py::test_case[flow/kept-call-at-turned]",
     ),
 )

@@ -232,4 +232,11 @@ MUTATIONS = (
         "False",
         f"{CASES}-outlives]",
     ),
+    _own(
+        "QL that is sent is one of who calls",
+        SETTING,
+        "in {*PRINTS, *STANDS, WRITES}",
+        "in ()",
+        f"{CASES}-tells-local]",
+    ),
 )

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from gcxform_plugins.dialects.heidenhain.cycles import DEFINED, PARAMETER
 from gcxform_plugins.dialects.heidenhain.holes import HOLES, PATTERNS, TAP
 from gcxform_plugins.dialects.heidenhain.kept_cycles import KEPT
-from gcxform_plugins.dialects.heidenhain.parameters import FN, SETS
+from gcxform_plugins.dialects.heidenhain.parameters import FN, PRINTS, SETS, STANDS, WRITES
 from gcxform_plugins.dialects.heidenhain.words import HEAD
 
 SAID = re.compile(r"(?:PATTERN|SEL\s+PGM|FPOL|TRANS|QS?(?=[0-9]))(?![A-Z])", re.IGNORECASE)
@@ -37,6 +37,8 @@ def said_of(lines: Sequence[str], own: bool, unsaid: bool = False) -> list[str] 
     goes_on = " ~" if more and "~" not in bare else ""
     text = HEAD.sub("", bare, 1).rstrip() + goes_on
     said = _kept(text.rstrip("~ "), [text, *more], unsaid)
+    if not own and _tells(text) and LOCAL.search(text):
+        return None
     if own or not said or not any(LOCAL.search(each) for each in said):
         return said
     target = TARGET.match(text)
@@ -59,6 +61,12 @@ def _kept(text: str, lines: list[str], unsaid: bool) -> list[str]:
     if re.match(r"QL[0-9]", text, re.IGNORECASE) or SAID.match(text):
         return lines
     return lines if CENTRE.match(text) and not STEPS.search(text) else []
+
+
+def _tells(text: str) -> bool:
+    """Whether a statement hands parameters on to others, as they are in its program."""
+    function = FN.fullmatch(text)
+    return function is not None and int(function[1]) in {*PRINTS, *STANDS, WRITES}
 
 
 def _outlives(text: str) -> bool:
