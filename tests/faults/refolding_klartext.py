@@ -239,4 +239,11 @@ MUTATIONS = (
         "in ()",
         f"{CASES}-tells-local]",
     ),
+    _own(
+        "QL that a form prints is one of who calls",
+        PLACE,
+        "and self._has_local:",
+        "and False:",
+        f"{CASES}-prints-local]",
+    ),
 )

@@ -24,6 +24,7 @@ POLAR = re.compile(r"[\s\d/]*LP(?![A-Z])", re.IGNORECASE)
 FLOW = re.compile(
     r"[\s\d/]*(?:BEGIN|END|LBL|FN\s*(?:9|1[0-2])\s*:|CALL\s+(?:LBL|PGM|SELECTED))", re.IGNORECASE
 )
+PRINTED = re.compile(r"[\s\d/]*FN\s*16\s*:", re.IGNORECASE)
 SIDE = re.compile(r"(?<![A-Z])R[LR](?![A-Z0-9])", re.IGNORECASE)
 WHOLE = re.compile(r"(?<![A-Z])P(?P<what>[AR])(?=[ \t]*[-+.,0-9Q])", re.IGNORECASE)
 
@@ -127,7 +128,14 @@ class InPlace(Programs):
         last = line
         while goes_on(self.lines[last]) and last + 1 < len(self.lines):
             last += 1
+        if not self.is_own(line) and PRINTED.match(self.lines[line]) and self._has_local:
+            return None
         return said_of(self.lines[line : last + 1], self.is_own(line), visit in self.unsaid)
+
+    @cached_property
+    def _has_local(self) -> bool:
+        """Whether anything is said of QL: what is printed by a form may be one of them."""
+        return any(LOCAL.search(code(text)) for text in self.lines)
 
     def leaves(self) -> dict[str, object]:
         """Return Q and QR parameters: other programs may read them."""
