@@ -19,7 +19,7 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
-from gcxform_plugins.dialects.heidenhain.kept_cycles import LEVELS, KeptCycles
+from gcxform_plugins.dialects.heidenhain.kept_cycles import ALONE, LEVELS, KeptCycles
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
@@ -42,7 +42,6 @@ AUTO = "AUTO"
 STROKES = 200, 205
 SLOWLY = 201, 203
 """Cycles that are read in several strokes, and those that leave at a feed."""
-ALONE = "let the CAM write the hole as plain moves"
 
 
 class Cycles(KeptCycles):

@@ -21,6 +21,7 @@ KEPT = frozenset((202, 204, 206, 207, 209, 241))
 RIGID = 207
 LEVELS = 200, 203, 204
 BESIDE = frozenset((202, 204))
+ALONE = "let the CAM write the hole as plain moves"
 IN_PLACE = "this calls a cycle as it stands"
 CALLED = "called as they stand, so that no pass changes what they do: cycles {}"
 
@@ -47,7 +48,7 @@ class KeptCycles(Datums):
         clear, surface, high = (told[n] for n in LEVELS)
         if clear < 0 or high < 0 or self.inch or self.mirrored != "":
             message = f"cycle {number} in inches or a mirror image, or with Q200 or Q204 below 0"
-            raise self.refusal("GX215", message, item)
+            raise self.refusal("GX215", message, item, ALONE)
         self.in_place[self.line] = IN_PLACE
         self.calls_kept |= {number}
         level = exact(surface + max(clear, high))
