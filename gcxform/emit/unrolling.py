@@ -2,8 +2,9 @@
 
 Those are the smallest: the call of a subprogram of which a line becomes another each time, or the
 loop around it, by lines that are executed in one go. A loop that its last line ends goes whole, and
-so does what else begins with one line and ends with another, where one of these goes. Lines that
-are called from elsewhere as well stay, and the call in question is written out.
+so does what else begins with one line and ends with another, where one of these goes. A jump out of
+them takes along what it passes over, and one between them goes where it leads to. Lines that are
+called from elsewhere as well stay, and the call in question is written out.
 """
 
 from __future__ import annotations
@@ -108,6 +109,7 @@ class Walk:
             begin, end = level.among(first, last)
             among = level.lines[begin : end + 1]
             ends = [(int(among.min()), int(among.max())), *self._crossed(first, last)]
+            ends += self._jumped(level.lines, begin, end)
             low = min(first, *(each[0] for each in ends))
             high = max(last, *(each[1] for each in ends))
             if (low, high) == (first, last):
@@ -116,6 +118,20 @@ class Walk:
         behind = level.at[end + 1 : end + 2]
         stop = self.own[behind[0]] - 1 if len(behind) else len(self.lines) - 1
         return Unit(first, last, int(self.own[level.at[begin]]), int(stop), why)
+
+    def _jumped(self, lines: Ints, begin: int, end: int) -> list[tuple[int, int]]:
+        """Return what the jumps pass over that lead into some executions of `lines`, or out of it.
+
+        What leads to the first line, or to the line behind the last one, leads there still.
+        """
+        among = lines[begin : end + 1]
+        first, last = int(among.min()), int(among.max())
+        found = []
+        if begin and lines[begin] != first:
+            found.append((int(lines[begin - 1]), int(lines[begin - 1])))
+        if end + 1 < len(lines) and (behind := int(lines[end + 1])) != last + 1:
+            found.append((behind, last) if behind < first else (first, behind - 1))
+        return found
 
     def _crossed(self, first: int, last: int) -> list[tuple[int, int]]:
         """Return the loops that lines stand in, or begin or end, and what they divide."""

@@ -13,6 +13,7 @@ FRAMES = "plugins/gcxform_plugins/dialects/siemens/frames.py"
 UNROLLING = "gcxform/emit/unrolling.py"
 TRANSLATION = "gcxform/flow/translation.py"
 SETTING = "plugins/gcxform_plugins/dialects/siemens/setting.py"
+PLACE = "plugins/gcxform_plugins/dialects/siemens/in_place.py"
 WORDS = "plugins/gcxform_plugins/dialects/siemens/words_moved.py"
 MOVED = "plugins/gcxform_plugins/dialects/shared/words_moved.py"
 COMPARED = "tests/test_refolded.py::test_what_came_back_is_read_and_compared"
@@ -123,6 +124,34 @@ MUTATIONS = (
         f"{CASES}-loop]",
     ),
     _own(
+        "what a jump out of a loop passes over is executed",
+        UNROLLING,
+        "(first, behind - 1)",
+        "(first, last)",
+        f"{CASES}-jumps]",
+    ),
+    _own(
+        "a jump into a loop stays",
+        UNROLLING,
+        "if begin and lines[begin] != first:",
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/fagor/own-lines-jumps]",
+    ),
+    _own(
+        "half of IF with ELSE is written out",
+        PLACE,
+        '(part for part in self._parts() if part.kind == "IF")',
+        "()",
+        f"{CASES}-jumps]",
+    ),
+    _own(
+        "what is written out has no label",
+        PLACE,
+        'return f"{head[0].rstrip()} {text}" if head and head[0].strip() else text',
+        "return text",
+        f"{CASES}-jumps]",
+    ),
+    _own(
         "what is called behind a line is not written out with it",
         UNROLLING,
         "self.own[behind[0]] - 1 if",
@@ -166,7 +195,7 @@ MUTATIONS = (
     ),
     _own(
         "words without blanks are where the first of their shape has them",
-        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        PLACE,
         "computed = self.placed_items(line)",
         "computed = self.items(line)",
         f"{CASES}-glued]",

@@ -17,7 +17,7 @@ from gcxform_plugins.dialects.siemens.learning import Learning
 from gcxform_plugins.dialects.siemens.line import FRAMES
 from gcxform_plugins.dialects.siemens.setting import DEFINES, SETTING, counted, said_of
 from gcxform_plugins.dialects.siemens.spelling import spelled
-from gcxform_plugins.dialects.siemens.structure import Structure, StructureError, code
+from gcxform_plugins.dialects.siemens.structure import Part, Structure, StructureError, code
 from gcxform_plugins.dialects.siemens.units import HEADER
 from gcxform_plugins.dialects.siemens.words_moved import line_moved, words_in
 
@@ -100,13 +100,25 @@ class InPlace(Learning):
         first = next((k for k in says if not HEADER.fullmatch(self.lines[k])), self.main.stop)
         return first, self.main.stop
 
+    def headed(self, line: int, text: str) -> str:
+        """Return a text with the number and the label of a line: jumps may lead there."""
+        head = HEAD.match(code(self.lines[line]))
+        return f"{head[0].rstrip()} {text}" if head and head[0].strip() else text
+
     def loops(self) -> list[tuple[int, int]]:
         """Return the loops of the main program."""
+        return [(part.first, part.last) for part in self._parts() if part.kind != "IF"]
+
+    def branches(self) -> list[tuple[int, ...]]:
+        """Return the lines of IF with ELSE and ENDIF in the main program."""
+        found = (part for part in self._parts() if part.kind == "IF")
+        return [tuple(sorted({each.first, each.other, each.last} - {-1})) for each in found]
+
+    def _parts(self) -> list[Part]:
         try:
-            parts = Structure(self.lines, self.main.start, self.main.stop).parts
+            return Structure(self.lines, self.main.start, self.main.stop).parts
         except StructureError:
             return []
-        return [(part.first, part.last) for part in parts if part.kind != "IF"]
 
     def sets(self, line: int, visit: int) -> list[str] | None:
         """Return the assignments of a line, or the frame that it sets.
