@@ -8,6 +8,7 @@ executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from collections.abc import Collection, Iterator
 from itertools import accumulate
@@ -114,6 +115,12 @@ def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
         for line in (*kept, *translator.left_behind(), *(executed if name in IN_LINES else ())):
             if translator.against[name].search(source.lines[line]):
                 raise refusal(source, line, f"this line would stay as it stands, and {WHY[name]}")
+
+
+def against_lines(translator: Translator, facts: Collection[Fact]) -> list[re.Pattern[str]]:
+    """Return what no line may have that is executed, by facts that hold of blocks alone."""
+    names = IN_LINES & {fact.name for fact in facts} & translator.against.keys()
+    return [translator.against[name] for name in sorted(names)]
 
 
 class Spelling:

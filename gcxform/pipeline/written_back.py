@@ -167,6 +167,7 @@ class SpelledOut:
         Raises SpellingError where that is not possible.
         """
         from gcxform.emit.refolding import refolded
+        from gcxform.emit.respelling import against_lines
         from gcxform.flow.translated import Translated
         from gcxform.proof.refolded import check_refolded
 
@@ -181,7 +182,10 @@ class SpelledOut:
         written = Source.of_bytes(found.text, self.given.name)
         written.folder, written.suffix = self.given.folder, self.given.suffix
         reading = replace(reading, crosses=True)
-        lost = check_refolded(written, self._blocks, self.source, self.plan.target, reading)
+        against = against_lines(self.source.translator, facts_after(self.plan.path_passes))
+        lost = check_refolded(
+            written, self._blocks, self.source, self.plan.target, reading, against
+        )
         self.told = (COUNTED.format(", ".join(lost)),) if lost else ()
         return found
 
@@ -270,7 +274,7 @@ class SpelledOut:
 def told(error: InputError, source: Source) -> str:
     """Return what an error says first, with its line."""
     (first, *_) = error.diagnostics
-    if first.where is None:
+    if first.where is None or not first.where.line:
         return first.message
     file = "" if first.where.file == source.name else f" of {first.where.file}"
     return f"line {first.where.line}{file}: {first.message}"

@@ -7,6 +7,9 @@ read: lines that set them stay, and what they hang on has to stay with them.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
+
 from gcxform.diagnostics import Diagnostic, GcxformError, Location, SpellingError
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.speller import ASIDE, COMMENT
@@ -17,16 +20,23 @@ from gcxform.stamps.comment import without_lines
 from gcxform.syntax.source import Source
 
 LEFT = "what the program leaves to others would be another value"
+STILL = "a line would call a cycle, or shift or turn coordinates, as no pass leaves any"
 HINT = "the program is written anew"
 
 
 def check_refolded(
-    written: Source, blocks: bytes, source: Translated, dialect: type[Dialect], reading: Reading
+    written: Source,
+    blocks: bytes,
+    source: Translated,
+    dialect: type[Dialect],
+    reading: Reading,
+    against: Collection[re.Pattern[str]] = (),
 ) -> list[str]:
     """Check that a program says blocks that are proved, and keeps what `source` has besides.
 
-    Return the names of values that only the control knew behind the program, and that it does not
-    set any more. Raises SpellingError: then it has to be written another way.
+    What is `against` a promise of a pass may be in no line that is executed. Return the names of
+    values that only the control knew behind the program, and that it does not set any more. Raises
+    SpellingError: then it has to be written another way.
     """
     try:
         found = check_spelled_out(written, blocks, dialect, reading)
@@ -41,6 +51,9 @@ def check_refolded(
         wrong = LEFT
     if not now.keys() <= left.keys():
         wrong = LEFT
+    executed = {*found.executed_lines()[1:].tolist()} if against else ()
+    if any(each.search(found.lines[line]) for each in against for line in executed):
+        wrong = STILL
     if wrong:
         raise SpellingError((Diagnostic("GX501", wrong, Location(written.name), HINT),))
     lost = (name for name, value in left.items() if value is None)

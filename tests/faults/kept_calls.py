@@ -21,6 +21,20 @@ def _kept(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 MUTATIONS = (
     _kept(
+        "lines of what is compensated may shift, where frames are folded",
+        "gcxform/emit/respelling.py",
+        "[translator.against[name] for name in sorted(names)]",
+        "[]",
+        "offsets-compensated",
+    ),
+    _kept(
+        "lines that are executed may shift, where frames are folded",
+        "gcxform/proof/refolded.py",
+        "{*found.executed_lines()[1:].tolist()} if against else ()",
+        "()",
+        "offsets-compensated",
+    ),
+    _kept(
         "where one has led an axis a pass has corrected it",
         "gcxform/modal/moves/kept_calls.py",
         "led[call.line] = sum(1 << axes.index(axis) for axis in named)",
