@@ -59,8 +59,10 @@ class Walk:
         """The executions of lines of the main program."""
         self.depth = self._depths()
         """How deep in calls of its own lines they are executed (own,)."""
-        self.loops = self.translator.loops()
-        self.branches = self.translator.branches()
+        self._loops = np.array(self.translator.loops(), np.int64).reshape(-1, 2)
+        self._branches = [(each[0], each[-1]) for each in self.translator.branches()]
+        parting = [(a, k) for k, each in enumerate(self.translator.branches()) for a in each]
+        self._parting = np.array(sorted(parting), np.int64).reshape(-1, 2)
         self._executed = Executed(np.arange(len(self.own)), self.lines[self.own])
         self._less: dict[int, Ints] = {}
         self._levels: dict[int, Executed] = {}
@@ -135,12 +137,11 @@ class Walk:
 
     def _crossed(self, first: int, last: int) -> list[tuple[int, int]]:
         """Return the loops that lines stand in, or begin or end, and what they divide."""
-        parted = [
-            (each[0], each[-1])
-            for each in self.branches
-            if any(first <= line <= last for line in each)
-        ]
-        return [*parted, *(each for each in self.loops if each[0] <= last and first <= each[1])]
+        low, high = np.searchsorted(self._parting[:, 0], (first, last + 1))
+        parted = {self._branches[k] for k in self._parting[low:high, 1].tolist()}
+        begins, ends = self._loops.T
+        loops = self._loops[(begins <= last) & (first <= ends)]
+        return [*sorted(parted), *((begin, end) for begin, end in loops.tolist())]
 
     def together(self, units: Iterable[Unit]) -> list[Unit]:
         """Return units of which none has lines of another one, in the order of their lines."""

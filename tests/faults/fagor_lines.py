@@ -117,8 +117,8 @@ MUTATIONS = (
     _fagor(
         "half of what begins with $IF is written out",
         "gcxform/emit/unrolling.py",
-        "if any(first <= line <= last for line in each)",
-        "if False",
+        "in self._parting[low:high, 1].tolist()}",
+        "in ()}",
         f"{CASE}-loop]",
     ),
     _fagor(

@@ -119,8 +119,8 @@ MUTATIONS = (
     _own(
         "a loop that its last line ends is written out without its head",
         UNROLLING,
-        "if each[0] <= last and first <= each[1]",
-        "if False",
+        "self._loops[(begins <= last) & (first <= ends)]",
+        "self._loops[:0]",
         f"{CASES}-loop]",
     ),
     _own(
