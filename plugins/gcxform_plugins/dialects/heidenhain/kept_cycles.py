@@ -23,7 +23,7 @@ LEVELS = 200, 203, 204
 BESIDE = frozenset((202, 204))
 ALONE = "let the CAM write the hole as plain moves"
 IN_PLACE = "this calls a cycle as it stands"
-CALLED = "called as they stand, so that no pass changes what they do: cycles {}"
+CALLED = "called as they stand, from places corrected for the height of the tool there: cycles {}"
 
 
 class KeptCycles(Datums):

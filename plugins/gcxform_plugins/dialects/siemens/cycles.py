@@ -15,7 +15,7 @@ CALLED = re.compile(r"([A-Z_]\w*)[ \t]*\((.*)\)", re.IGNORECASE | re.DOTALL)
 PARTS = re.compile(r'"[^"]*"|[^,"]+|,')
 HOLE, PATH = "G65.1", "G65.2"
 """The codes of blocks that stand for cycles which are called as they stand."""
-KEPT = "called as they stand, so that no pass changes what they do: {}"
+KEPT = "called as they stand, from places corrected for the height of the tool there: {}"
 SECONDS = "10"
 """AMODE of drilling cycles where dwells are in seconds, and depths as ever."""
 MODES = 3
