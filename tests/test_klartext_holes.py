@@ -197,7 +197,7 @@ def test_places_that_are_kept_are_not_those_before():
         ((CENTRE, ROUND.format(0, 360, 0, 8, f"{COMMON} Q365=1")), "where it ends"),
         ((CENTRE, "L Z+50 FMAX", ROW.format(1, 0, COMMON)), "from elsewhere"),
         ((ROW.format(1, 0, COMMON),), "no cycle"),
-        ((CENTRE, "Q201 = -5", "CYCL CALL"), "no cycle"),
+        ((CENTRE, "Q201 = -5", "CYCL CALL"), "behind its definition"),
         ((CENTRE, ROW.format(1, 0, COMMON), "CYCL CALL"), "lacks"),
     ],
 )
