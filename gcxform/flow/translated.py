@@ -112,8 +112,8 @@ def _run(
     lost: dict[int, str] = {}
     try:
         for line, found in translator.run():
-            for visit in [v for v in translator.loses_behind if v < translator.visit]:
-                translator.loses |= {*translator.loses_behind.pop(visit)}
+            if translator.loses_behind:
+                translator.lose_behind()
             if translator.loses:
                 lost[len(blocks)] = "".join(sorted(translator.loses))
                 translator.loses.clear()

@@ -90,6 +90,11 @@ class Translator(LineWriting):
         self._items: tuple[Item, ...] = ()
         self._learned = Learned(self) if self.keyed else None
 
+    def lose_behind(self) -> None:
+        """Lose before the next block what is lost behind the executions that are over."""
+        for visit in [each for each in self.loses_behind if each < self.visit]:
+            self.loses |= {*self.loses_behind.pop(visit)}
+
     @abstractmethod
     def blocks(self, items: Sequence[Item]) -> Iterable[str]:
         """Return the blocks that the items of a line stand for. Raises InputError."""
