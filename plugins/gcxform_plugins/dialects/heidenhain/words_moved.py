@@ -17,6 +17,7 @@ from gcxform import vocabulary as v
 from gcxform_plugins.dialects.heidenhain.numerals import signed
 from gcxform_plugins.dialects.heidenhain.spelling import PATH
 from gcxform_plugins.dialects.heidenhain.words import exact
+from gcxform_plugins.dialects.shared.words_moved import edited
 
 WORD = re.compile(
     r"(?P<plain>F[ \t]*(?:MAX|AUTO)(?![A-Z])|DR[ \t]*[-+](?![0-9.,])|R[LR](?![A-Z0-9]))"
@@ -179,10 +180,7 @@ class _Edits:
         for word in self.words:
             self._edit(word)
         self._add()
-        text = self.text
-        for start, end, new in sorted(self.made, reverse=True):
-            text = text[:start] + new + text[end:]
-        return text.rstrip() if self.possible else None
+        return edited(self.text, self.made).rstrip() if self.possible else None
 
     def _is_polar_still(self) -> bool:
         """Whether polar coordinates say all, and lead where they did."""

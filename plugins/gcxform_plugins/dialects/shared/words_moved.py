@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import ClassVar
@@ -40,6 +40,13 @@ class Word:
     def code(self) -> str:
         """The code of a G word."""
         return f"G{self.number.lstrip('0') or '0'}" if self.name == "G" else ""
+
+
+def edited(text: str, edits: Iterable[tuple[int, int, str]]) -> str:
+    """Return a text with other parts in place of some of its own, by where these begin and end."""
+    for start, end, new in sorted(edits, reverse=True):
+        text = text[:start] + new + text[end:]
+    return text
 
 
 class Edits(ABC):
@@ -86,10 +93,7 @@ class Edits(ABC):
         for word in self.words:
             self._edit(word)
         self._add()
-        text = self.text
-        for start, end, new in sorted(self.made, reverse=True):
-            text = text[:start] + new + text[end:]
-        return text.rstrip() if self.possible else None
+        return edited(self.text, self.made).rstrip() if self.possible else None
 
     def _edit(self, word: Word) -> None:
         if word.name in self.axes:
