@@ -50,6 +50,7 @@ from gcxform.machine.machine import Axis, Machine, Tool
 from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
 from gcxform.system.inputs import referred
+from gcxform.toolpath.path import GROUND
 
 __all__ = [
     "AXES",
@@ -62,6 +63,7 @@ __all__ = [
     "DWELL",
     "FOLLOWING",
     "FORWARD",
+    "GROUND",
     "HALT",
     "HOME",
     "ISO",

@@ -7,9 +7,9 @@ Codes are never reused. The hundreds say where a thing was found: 1 text, 2 mean
 
 from __future__ import annotations
 
-from gcxform.catalogue import flow, machines, reading, usage, writing
+from gcxform.catalogue import flow, geometry, machines, reading, usage, writing
 
-PARTS = (reading, flow, machines, writing, usage)
+PARTS = (reading, flow, geometry, machines, writing, usage)
 CATALOGUE: dict[str, tuple[str, str]] = dict(
     sorted(entry for part in PARTS for entry in part.CODES.items())
 )

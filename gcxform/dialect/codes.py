@@ -118,9 +118,9 @@ def measures(takes: str) -> Code:
 def bores(axes: str) -> Code:
     """Return a code that moves along the tool by itself, to and fro: it is kept.
 
-    Behind it the axes that its block names are where that says.
+    Behind it the axes that its block names are where that says; K says how far below is its ground.
     """
-    return Code("non-modal", Effect.CALL, axes, act=f"at {axes}")
+    return Code("non-modal", Effect.CALL, f"{axes}K", act=f"at {axes}", lengths="K")
 
 
 def cuts(takes: str, group: str = "non-modal", ends: str = "unknown") -> Code:

@@ -151,6 +151,13 @@ class Event:
         return Event, (self.row, self.what, self.values, self.line, self.within)
 
 
+GROUND = "ground"
+"""The number of a call that bores: how far its ground is below its end, in the unit of its block.
+
+It is along the axis that the block names beside it, where what commands a machine asks for it.
+"""
+
+
 @dataclass(frozen=True, slots=True)
 class Given:
     """A block that the user gives, to be written as it stands before the move `row`.

@@ -6,6 +6,7 @@ from faults.mutation import Mutation
 
 SIEMENS = "plugins/gcxform_plugins/dialects/siemens/"
 HEIDENHAIN = "plugins/gcxform_plugins/dialects/heidenhain/"
+BORED = "plugins/gcxform_plugins/passes/volumetric/bored.py"
 KLARTEXT = "tests/test_corpus.py::test_case[dialects/heidenhain/"
 CASES = "tests/test_corpus.py::test_case[dialects/siemens/"
 
@@ -284,15 +285,15 @@ MUTATIONS = (
     Mutation(
         "kept calls: Q203 that is set behind the definition changes nothing",
         f"{HEIDENHAIN}cycles.py",
-        "return LEVELS",
+        "return self.levels()",
         "return ()",
         f"{KLARTEXT}kept-hole-level-set]",
     ),
     Mutation(
-        "kept calls: how high one ends hangs on its depth",
+        "kept calls: what a call hangs on is how long it waits",
         f"{HEIDENHAIN}cycles.py",
-        "return LEVELS",
-        "return (*LEVELS, 201)",
+        "return self.levels()",
+        "return (*self.levels(), 211)",
         f"{KLARTEXT}kept-hole-level-of]",
     ),
     Mutation(
@@ -308,5 +309,65 @@ MUTATIONS = (
         "self.matrix[axis][k] == self.matrix[k][axis] == float(k == axis)",
         "True",
         "tests/test_corpus.py::test_case[flow/kept-call-at-turned]",
+    ),
+    Mutation(
+        "kept calls: the ground of a hole is where its call ends",
+        BORED,
+        "ground[np.arange(len(ground)), self.along] -= self.depth",
+        "ground[np.arange(len(ground)), self.along] -= 0.0",
+        f"{KLARTEXT}kept-hole-leans]",
+    ),
+    Mutation(
+        "kept calls: a hole leans from where its call ends",
+        BORED,
+        "np.where(np.isnan(began), called[each, self.along], began)",
+        "called[each, self.along]",
+        "tests/test_corpus.py::test_case[dialects/siemens/kept-hole-leans-less]",
+    ),
+    Mutation(
+        "kept calls: a ground in inches is one in mm",
+        BORED,
+        "np.where(path.blocks.inch[path.block[rows]], 25.4, 1.0)",
+        "1.0",
+        "tests/test_kept_holes.py::test_grounds_in_inches",
+    ),
+    Mutation(
+        "kept calls: along the tool a ground is off by as much as across",
+        BORED,
+        "along = np.abs(lean[each, self.along])",
+        "along = np.abs(lean[each, self.along - 1])",
+        "tests/test_kept_holes.py::test_the_certificate_says_how_far_grounds_are_off",
+    ),
+    Mutation(
+        "kept calls: a ground is in any table",
+        BORED,
+        "beyond = np.flatnonzero(beyond_tables(step, grounds))",
+        "beyond = np.zeros(0, np.int64)",
+        "tests/test_corpus.py::test_case[dialects/siemens/kept-hole-below-the-tables]",
+    ),
+    _kept(
+        "a depth of steps is an absolute one",
+        f"{SIEMENS}cycles.py",
+        "if mode[-1:] not in AS_EVER:",
+        "if False:",
+        "kept-hole-of-steps",
+    ),
+    _called(
+        "back boring turns back where it begins to bore",
+        "DEPTHS = 204, (250, 252, 200)",
+        "DEPTHS = 204, (250, 252)",
+        "kept-hole-from-below",
+    ),
+    _called(
+        "how deep one is does not count",
+        "return (*LEVELS, *deep) if self.reading.compensates else LEVELS",
+        "return LEVELS",
+        "kept-hole-depth-of",
+    ),
+    _called(
+        "a diameter is a depth",
+        "if number == CENTRING and told.get(BY_DIAMETER):",
+        "if False:",
+        "kept-hole-by-diameter",
     ),
 )

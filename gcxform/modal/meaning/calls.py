@@ -14,6 +14,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.modal.meaning.meaning import Act, EventShape, Meaning, Refusal
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import BLANKS, CODES, Block, Expression, Mark, Number, Statement, Word
+from gcxform.toolpath.path import GROUND
 
 ORDER = 25
 CALL = "call"
@@ -64,7 +65,9 @@ def read_call(
     meaning.loses_position = meaning.runs_macro = True
     meaning.lost_by.add(-1)
     meaning.acts.append(Act(CALL, name, (), word.start, word.end - word.start))
-    meaning.events.append(EventShape(ORDER, _text(shape), meaning.call_slots))
+    deep = dialect.codes[name].lengths if name in dialect.codes else ""
+    said = tuple((GROUND if a in deep else a, slot) for a, slot in meaning.call_slots)
+    meaning.events.append(EventShape(ORDER, _text(shape), said))
 
 
 ELSEWHERE = "is it written for another control? `gcxform info FILE` says which ones have it"

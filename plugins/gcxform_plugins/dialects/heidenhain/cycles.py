@@ -19,7 +19,7 @@ from gcxform_plugins.dialects.heidenhain.holes import (
     row_places,
     strokes_of,
 )
-from gcxform_plugins.dialects.heidenhain.kept_cycles import ALONE, LEVELS, KeptCycles
+from gcxform_plugins.dialects.heidenhain.kept_cycles import ALONE, KeptCycles
 from gcxform_plugins.dialects.heidenhain.parameters import NAMED, key_of
 from gcxform_plugins.dialects.heidenhain.words import exact, goes_on, plain, written
 
@@ -149,7 +149,7 @@ class Cycles(KeptCycles):
     def _counting(self) -> Iterable[int]:
         """Return the parameters that blocks of the cycle in force hang on."""
         if self.keeps(self.cycle):
-            return LEVELS
+            return self.levels()
         if self.cycle == TAP:
             return TAPPED.needs
         hole = HOLES.get(self.cycle)

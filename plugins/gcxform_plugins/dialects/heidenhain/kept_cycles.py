@@ -20,6 +20,10 @@ KEPT = frozenset((202, 204, 206, 207, 209, 241))
 """Those of which the moves are not read, or are tied to the spindle."""
 RIGID = 207
 LEVELS = 200, 203, 204
+DEPTH = 201
+BACK_BORING, DEPTHS = 204, (250, 252, 200)
+"""What bores from below goes down through the part, by its edge, and as far clear of it."""
+CENTRING, BY_DIAMETER = 240, 343
 BESIDE = frozenset((202, 204))
 ALONE = "let the CAM write the hole as plain moves"
 IN_PLACE = "this calls a cycle as it stands"
@@ -33,15 +37,28 @@ class KeptCycles(Datums):
     """
 
     calls_kept: frozenset[int] = frozenset()
+    cycle: int
 
     def keeps(self, number: int) -> bool:
         """Whether a cycle may be called as it stands."""
         tied = number == RIGID and not self.reading.compensates  # it is read, and stays a tap
         return self.reading.asides and number in KEPT and not tied
 
+    def levels(self) -> tuple[int, ...]:
+        """Return the parameters of the cycle in force that its blocks hang on."""
+        deep = DEPTHS if self.cycle == BACK_BORING else (DEPTH,)
+        return (*LEVELS, *deep) if self.reading.compensates else LEVELS
+
+    def _depth(self, item: gx.Item, number: int, told: Mapping[int, Decimal]) -> Decimal:
+        """Return how far below Q203 a cycle goes. Raises InputError."""
+        if number == CENTRING and told.get(BY_DIAMETER):
+            message = "cycle 240 with Q343, a depth by the diameter, is not known to be so deep"
+            raise self.refusal("GX215", message, item, ALONE)
+        return sum((told[n] for n in DEPTHS), Decimal(0)) if number == BACK_BORING else -told[DEPTH]
+
     def kept_hole(self, item: gx.Item, number: int, told: Mapping[int, Decimal]) -> list[str]:
         """Return the block of a cycle that is called as it stands. Raises InputError."""
-        if lacks := sorted({*LEVELS} - told.keys()):
+        if lacks := sorted({*self.levels()} - told.keys()):
             message = f"cycle {number} lacks Q{lacks[0]}, or a number for it"
             hint = f"define it with Q{lacks[0]} = a number"
             raise self.refusal("GX215", message, item, hint)
@@ -49,6 +66,7 @@ class KeptCycles(Datums):
         if clear < 0 or high < 0 or self.inch or self.mirrored != "":
             message = f"cycle {number} in inches or a mirror image, or with Q200 or Q204 below 0"
             raise self.refusal("GX215", message, item, ALONE)
+        deep = self._depth(item, number, told) if self.reading.compensates else Decimal(0)
         self.in_place[self.line] = IN_PLACE
         self.calls_kept |= {number}
         level = exact(surface + max(clear, high))
@@ -61,6 +79,8 @@ class KeptCycles(Datums):
             self.loses_behind[self.visit] = "XY"
             self.lost |= dict.fromkeys("XY", self.line + 1)
             self.place = {axis: at for axis, at in self.place.items() if axis not in "XY"}
+        if self.reading.compensates:
+            end += f" K{exact(Decimal(level) - surface + deep)}"
         return [f"{HOLE} Z{end} {gx.Speller.aside(f'CYCL DEF {number} {said}')}"]
 
 

@@ -254,10 +254,10 @@ class Blocks(Contours):
 
     def _kept_hole(self, hole: Drilling) -> Iterator[str]:
         """Yield the block of a cycle that stays as it stands, with the level at which it ends."""
-        words = []
+        words: list[str] = []
+        ground = self._level(hole, hole.ground) if hole.ground else []
         for _, level, _ in hole.steps:
-            self.place.absolute(hole.axis, level)
-            words = self.outside(False, [hole.axis + level])
+            words = self._level(hole, level)
         if [word for word in words if word[0] != hole.axis]:
             self.refuse("a cycle that stays as it stands, in a frame that tilts")
         if self.frame != Frame():
@@ -265,6 +265,7 @@ class Blocks(Contours):
         yield from self.distance_code(Line(), False)
         ends = [word if "." in word else f"{word}." for word in words]  # else increments, perhaps
         code = PATH if hole.cuts else HOLE
+        ends += [f"K{Decimal(words[0][1:]) - Decimal(word[1:]):f}" for word in ground]
         yield " ".join([code, *ends, gx.Speller.aside(hole.kept)])
         self.calls_kept[hole.kept.partition("(")[0].strip().upper()] = None
         self.feed_open, self.along, self.place.moved = True, None, True
@@ -272,6 +273,11 @@ class Blocks(Contours):
             gone = self.plane if words else LINEAR
             self.place.lose(gone, shifted=False)
             self.loses |= {*gone}
+
+    def _level(self, hole: Drilling, level: str) -> list[str]:
+        """Return the words that lead the tool along its axis to a level. Raises PlaceError."""
+        self.place.absolute(hole.axis, level)
+        return self.outside(False, [hole.axis + level])
 
     # --- tools ---
 

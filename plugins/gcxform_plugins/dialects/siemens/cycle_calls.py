@@ -85,7 +85,8 @@ class CycleCalls(Statements):
             if not self.reading.asides:
                 raise
         if name in cycles.OF_CALL:
-            return cycles.kept_hole(name, given, axis, self.text_of(item))
+            deep = self.reading.compensates
+            return cycles.kept_hole(name, given, axis, self.text_of(item), deep)
         if any(map(self._is_label, cycles.texts_in(given))):
             raise cycles.CycleError("its contour stands in this program, and may become another")
         return cycles.kept_path(name, given, axis, self.text_of(item))

@@ -24,6 +24,8 @@ PLANES = {"Z": "1", "Y": "2", "X": "3"}
 """DMODE where it names the plane, by the axis across that."""
 ABSOLUTE = ("2", "12")
 """AMODE where a depth is absolute, by its ones."""
+AS_EVER = ("", "0", "2")
+"""The ones of AMODE where DP is absolute, as it is without."""
 DIGITS = re.compile(r"[0-9]{1,7}")
 QUALITY = re.compile(r"_?(?:ORI_)?(?:OFF|FINISH|SEMIFIN|ROUGH)")
 WORDY = re.compile(r"[A-Z_]", re.IGNORECASE)
@@ -54,6 +56,7 @@ class Drilling:
               one in force; code 4 is a dwell, of seconds
     own_feed  it has feeds of its own: behind one that is read which is in force is not known
     kept      the call, where it stays as it stands: it ends at the level of its one step, if any
+    ground    how deep that goes, where it bores and that is known
     cuts      it stays, and moves in the plane as well, where no manual tells
     """
 
@@ -62,6 +65,7 @@ class Drilling:
     own_feed: bool = False
     kept: str = ""
     cuts: bool = False
+    ground: str = ""
 
 
 class CycleError(Exception):
@@ -90,8 +94,10 @@ def _without_modes(name: str, given: Sequence[str], axis: str) -> list[str]:
     return rest
 
 
-def kept_hole(name: str, given: Sequence[str], axis: str, text: str) -> Drilling:
+def kept_hole(name: str, given: Sequence[str], axis: str, text: str, deep: bool) -> Drilling:
     """Return the hole of a cycle that is called as it stands. Raises CycleError.
+
+    `deep`: how deep it goes matters.
 
     It moves along the axis across the plane, and ends at RTP over the place at which it was called;
     CYCLE86 comes back there from where it has lifted the tool off (Cycles 11.02, 2.1). CYCLE840
@@ -106,7 +112,16 @@ def kept_hole(name: str, given: Sequence[str], axis: str, text: str) -> Drilling
     if not plane and any(given[along + 1 :]):
         raise CycleError("what stands behind its axis is not known")
     own_feed = name == "CYCLE84"
-    return Drilling(axis, (("", _number(given[0], "RTP"), ""),), own_feed, text)
+    ground = _ground(values, values[plane + 1] if plane else "") if deep else ""
+    return Drilling(axis, (("", _number(given[0], "RTP"), ""),), own_feed, text, ground=ground)
+
+
+def _ground(values: Sequence[str], mode: str) -> str:
+    """Return how deep a hole is; `mode` is its AMODE. Raises CycleError."""
+    if mode[-1:] not in AS_EVER:
+        raise CycleError("AMODE says that its depth is no absolute one")
+    level = Decimal(_number(values[1], "RFP"))
+    return _depth(values[3], values[4], level, "DP", "DPR")
 
 
 def texts_in(given: Sequence[str]) -> list[str]:

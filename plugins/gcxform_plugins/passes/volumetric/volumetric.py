@@ -19,8 +19,9 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags
+from gcxform_plugins.passes.volumetric.bored import Bored
 from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
-from gcxform_plugins.passes.volumetric.forward.window import left_to_machine
+from gcxform_plugins.passes.volumetric.forward.window import Window, left_to_machine
 from gcxform_plugins.passes.volumetric.levers import UNKNOWN, lever_of
 from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
@@ -116,11 +117,16 @@ class Volumetric(VolumetricOptions, gx.Pass):
     def measure(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
-        """Return how far the path goes beyond the tables, where that is allowed."""
-        if self.outside is gx.Outside.ERROR or not len(before):
+        """Return how far the path goes beyond the tables, and how far grounds of holes are off."""
+        if not len(before):
             return {}
+        place = self._place(before, context)
+        bored = Bored.of(before)
+        found = bored.figures(Window(self, before, place)) if len(bored.rows) else {}
+        if self.outside is gx.Outside.ERROR:
+            return found
         rows = np.flatnonzero(~left_to_machine(before))
-        return beyond(self, before, self._place(before, context).offset, rows)
+        return found | beyond(self, before, place.offset, rows)
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return where the rows of a path are in the machine."""

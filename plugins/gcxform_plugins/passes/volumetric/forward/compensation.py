@@ -21,6 +21,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
+from gcxform_plugins.passes.volumetric.bored import check_bored
 from gcxform_plugins.passes.volumetric.forward.arcs import ArcFitter
 from gcxform_plugins.passes.volumetric.forward.lines import cuts_of_lines
 from gcxform_plugins.passes.volumetric.forward.window import Window
@@ -40,6 +41,7 @@ class Compensation(Window):
         self._check_own()
         self._check_known()
         check_inside(self.step, self.path, self.offset, np.flatnonzero(~self.left))
+        check_bored(self)
         commands = self._commands(self.entry_command)
         self._check_begins(commands)
         self._check_paces(commands)
