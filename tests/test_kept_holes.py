@@ -16,7 +16,7 @@ structure = "keep"
 [[pass]]
 use = "volumetric"
 model = "model.toml"
-tolerance = 0.1
+tolerance = {}
 part-origin = [0.0, 0.0, 0.0]
 """
 MODEL = """format = 1
@@ -34,10 +34,10 @@ ACROSS = "holes called as they stand: grounds off across the tool, mm"
 ALONG = "holes called as they stand: grounds off along the tool, mm"
 
 
-def figures(folder: Path, *lines: str) -> dict[str, float]:
+def figures(folder: Path, *lines: str, tolerance: float = 0.1) -> dict[str, float]:
     """Return what the certificate of a program has measured."""
     (folder / "model.toml").write_text(MODEL)
-    (folder / "p.toml").write_text(PIPELINE)
+    (folder / "p.toml").write_text(PIPELINE.format(tolerance))
     text = "\n".join(("N1 G17 G90 G54 G94 S500 M3", *lines, "M30", "")).encode()
     result = gx.Pipeline.load(folder / "p.toml").run(text)
     return dict(result.certificate.measured)
@@ -61,3 +61,13 @@ def test_grounds_in_inches(tmp_path: Path) -> None:
 def test_a_program_without_such_holes_says_nothing(tmp_path: Path) -> None:
     """Nothing is measured where nothing is called as it stands."""
     assert not figures(tmp_path, "G710", "G0 X10 Y20 Z20", "G1 Z-5 F100")
+
+
+def test_a_hint_does_not_drill_again(tmp_path: Path) -> None:
+    """Under MCALL a rapid between would be a hole more."""
+    hole = "MCALL CYCLE840(16,10,5,-1,0,,,3,,1)"
+    with pytest.raises(gx.InputError) as caught:
+        figures(tmp_path, "G710", "G0 X10 Y20 Z16", hole, "X30", "G1 Z5 F100", tolerance=0.01)
+    (said,) = caught.value.diagnostics
+    assert said.code == "GX317"
+    assert said.hint.startswith("end the modal call")

@@ -21,7 +21,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Floats, Ints
-from gcxform_plugins.passes.volumetric.bored import check_bored
+from gcxform_plugins.passes.volumetric.bored import Bored, check_bored
 from gcxform_plugins.passes.volumetric.forward.arcs import ArcFitter
 from gcxform_plugins.passes.volumetric.forward.lines import cuts_of_lines
 from gcxform_plugins.passes.volumetric.forward.window import Window
@@ -197,20 +197,24 @@ class Compensation(Window):
         path = self.path
         size = f"{off:.4f} mm off" if np.isfinite(off) else "off by an amount that is not known"
         what = "behind a rapid that is not compensated" if row else "at the start"
+        ends = ""
         if row and not self.left[row - 1]:
             what = "behind another length or offset, without a move between"
+        elif row - 1 in Bored.of(path).rows:
+            what = "behind a hole that is called as it stands"
+            ends = "end the modal call of the hole if it is one; "
         inch = 25.4 if path.blocks.inch[path.block[row]] else 1.0
         words = zip("XYZ", path.in_frames(path.start)[row, :3] / inch, strict=True)
         there = " ".join(f"{axis}{word:.6g}" for axis, word in words if np.isfinite(word))
         unknown = [a for a, x in zip("XYZ", path.start[row], strict=False) if np.isnan(x)]
         more = f" and {' and '.join(unknown)}, which has not been programmed yet" if unknown else ""
         steps = "G91 and " if path.blocks.incremental[path.block[row]] else ""
-        then = f"begin it with {steps}its own motion code"
         return path.refuse(
             "GX317",
             np.array([row]),
             f"this feed move begins {what}, where the machine is {size}",
-            f"before it, write a rapid to where it begins: G90 G0 {there}{more}; and {then}",
+            f"{ends}before it, write a rapid to where it begins, in absolute words: {there}{more}; "
+            f"and begin it with {steps}its own motion",
         )
 
     def _check_paces(self, commands: Floats) -> None:
