@@ -35,6 +35,7 @@ ANSWERS: dict[str, Any] = {
     "subroutine-locals": "shared",
     "mcall-in-subprograms": "acts",
     "motion-at-start": "G1",
+    "swivel-reference": "A",
     "section-repeats": "further",
     "tool-change-by": "M6",
 }

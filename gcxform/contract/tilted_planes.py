@@ -28,6 +28,7 @@ TAKES = {
     **dict.fromkeys(("plane", "define-plane"), EULER),
     **dict.fromkeys(("tip", "follow-tip"), "H"),
     **dict.fromkeys(("no-plane", "orient"), ""),
+    "swivel": "P",
 }
 Which = Literal["refused", "kept", "followed"]
 

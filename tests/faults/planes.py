@@ -19,6 +19,14 @@ def tip(name: str) -> str:
     return f"tests/test_corpus.py::test_case[dialects/fanuc/followed-tip-{name}]"
 
 
+SWIVELS = "plugins/gcxform_plugins/dialects/siemens/swivelling.py"
+SWIVELLED = "tests/test_swivelled_tables.py::test_a_point_of_a_plane_is_where_quaternions_say[1]"
+
+
+def swivel(name: str) -> str:
+    return f"tests/test_corpus.py::test_case[dialects/siemens/swivelled-{name}]"
+
+
 MUTATIONS = (
     Mutation(
         "planes: the angles are turned in the other order",
@@ -65,7 +73,7 @@ MUTATIONS = (
     Mutation(
         "planes: an axis that is free turns with the coordinates",
         PLANES,
-        "if state is State.POLE and abs(",
+        "if free is not None and abs(",
         "if False and abs(",
         case("free-axis"),
     ),
@@ -226,7 +234,7 @@ MUTATIONS = (
     Mutation(
         "tips: the table stands where it stood behind a tool change",
         LOOK,
-        "elif ORIENT not in said:",
+        "elif not said & ORIENTING:",
         "elif not said:",
         tip("lost"),
     ),
@@ -243,5 +251,103 @@ MUTATIONS = (
         'TIPS = replace(NO_PLANES, planes={"G43.4": "follow-tip"})',
         "TIPS = Fanuc.tip_rule",
         "tests/test_corpus.py::test_case[dialects/controls/mazak-plane]",
+    ),
+    Mutation(
+        "swivels: the higher value is the lower one",
+        PLANES,
+        "values = angles[:, column] * way",
+        "values = angles[:, column] * -way",
+        swivel("compensated"),
+    ),
+    Mutation(
+        "swivels: of an axis that turns without end one value is the lowest",
+        PLANES,
+        "if chain.axes[column].limits is None or np.ptp(",
+        "if np.ptp(",
+        swivel("without-ends"),
+    ),
+    Mutation(
+        "swivels: by the first axis, where nobody says",
+        PLANES,
+        "if by not in chain.letters:",
+        "by = by or chain.letters[0]\n    if by not in chain.letters:",
+        swivel("by-which-axis"),
+    ),
+    Mutation(
+        "swivels: an axis that is free stays",
+        PLANES,
+        "angles, free = _possible(chain, tilted, standing, asked)\n    if free is not None:",
+        "angles, free = _possible(chain, tilted, standing, asked)\n    if False:",
+        swivel("free"),
+    ),
+    Mutation(
+        "swivels: axes that are not told to turn stand right",
+        PLANES,
+        "stands = np.abs(angles - standing).max(axis=1) <= EQUAL",
+        "stands = np.abs(angles - standing).max(axis=1) >= 0",
+        swivel("not-at-all"),
+    ),
+    Mutation(
+        "swivels: turns are about axes that stand",
+        SWIVELS,
+        "turned = turned @ _turn(axis, float(angle))",
+        "turned = _turn(axis, float(angle)) @ turned",
+        SWIVELLED,
+    ),
+    Mutation(
+        "swivels: what shifts behind the turns shifts before them",
+        SWIVELS,
+        "+ turned @ [float(value) for value in behind]",
+        "+ np.array([float(value) for value in behind])",
+        SWIVELLED,
+    ),
+    Mutation(
+        "swivels: the first angle of Euler is half a turn off",
+        SWIVELS,
+        "math.atan2(turned[0, 2], -turned[1, 2])",
+        "math.atan2(-turned[0, 2], turned[1, 2])",
+        SWIVELLED,
+    ),
+    Mutation(
+        "swivels: a plane upon another is a new one",
+        SWIVELS,
+        "values[2] not in NEW or ",
+        "",
+        swivel("upon-another"),
+    ),
+    Mutation(
+        "swivels: a frame of the program stays",
+        SWIVELS,
+        "if apart or self.frame != Frame():",
+        "if apart:",
+        swivel("in-a-frame"),
+    ),
+    Mutation(
+        "swivels: behind a plane X, Y and Z are where they were in it",
+        SWIVELS,
+        "self.swivelled = False\n            self._lose_all()",
+        "self.swivelled = False",
+        swivel("and-left"),
+    ),
+    Mutation(
+        "swivels: MCALL of one is one",
+        "plugins/gcxform_plugins/dialects/siemens/cycle_calls.py",
+        "elif line.modal is not None:",
+        "elif False:",
+        swivel("under-mcall"),
+    ),
+    Mutation(
+        "swivels: the motion behind one is rapid",
+        SWIVELS,
+        'self.said, self.said_steps, self.swivelled = "", False, True',
+        "self.said_steps, self.swivelled = False, True",
+        "tests/test_swivelled_tables.py::test_a_feed_move_behind_is_one",
+    ),
+    Mutation(
+        "swivels: a plane may stay where none shall",
+        "plugins/gcxform_plugins/dialects/siemens/effects.py",
+        "|CYCLE800[ \\t]*\\([ \\t]*[^) \\t])",
+        ")",
+        swivel("folded"),
     ),
 )

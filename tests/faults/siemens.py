@@ -1509,8 +1509,8 @@ MUTATIONS = (
     Mutation(
         "siemens: a swivel that is ended does not go along",
         CYCLE_CALLS,
-        "            elif self.reading.asides:\n",
-        "            elif False:\n",
+        "                if self.reading.asides:\n",
+        "                if False:\n",
         "tests/test_corpus.py::test_case[dialects/siemens/whole-switched-off]",
     ),
     Mutation(

@@ -20,6 +20,8 @@ between G68.2 and G53.1, a head that turns, an attitude in which an axis is free
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from gcxform.machine.chain import Chain
@@ -33,17 +35,18 @@ from gcxform.modal.frame_state import (
     vector_of,
 )
 from gcxform.modal.frames.act import ActError, Asked
+from gcxform.modal.meaning.meaning import ORIENTING
 from gcxform.system.arrays import Floats
 from gcxform.toolpath.frames import Vector
 
 FLAT = 1e-9  # the sine of what may be between the tool and the plane it stands on
 EQUAL, APART = 1e-6, 0.01  # degrees: ways that are the same, and ways that are not for certain
 TURN = 360.0
-LEAVE = "write G69 before"
+LEAVE = "leave the plane before, by G69 or CYCLE800()"
 IN_PLANE = frozenset(
     {
         *("length", "length-negative", "length-number", "no-length", "change-tool", "set-tool"),
-        *("user-code", "call", "orient", "no-rotate", "home", "machine", "probe"),
+        *("user-code", "call", "orient", "swivel", "no-rotate", "home", "machine", "probe"),
     }
 )
 """Acts that leave a plane where it is."""
@@ -65,7 +68,7 @@ def check_in_plane(state: FrameState, name: str, code: str) -> None:
 
 def out_of_plane(state: FrameState, failed: str) -> FrameState:
     """Return the state behind an act that failed: of words in no plane nothing need be said."""
-    return replace(state, plane=None) if failed == "orient" else state
+    return replace(state, plane=None) if failed in ORIENTING else state
 
 
 def define(state: FrameState, asked: Asked) -> FrameState:
@@ -101,6 +104,23 @@ def zero_of_work(state: FrameState, asked: Asked, what: str) -> Floats:
 
 def orient(state: FrameState, asked: Asked) -> FrameState:
     """G53.1: the rotary axes turn until the tool stands on the plane, and take it along."""
+    return _oriented(state, asked, _attitude)
+
+
+def swivel(state: FrameState, asked: Asked) -> FrameState:
+    """As G53.1, to the attitude that P says: of one axis the lower (-1) or the higher (1) value.
+
+    With P0 no axis turns. Which axis that is the machine's builder has set; where only one attitude
+    is within the limits that one is taken (SINUMERIK operating manual, CYCLE800, _DIR).
+    """
+    return _oriented(state, asked, _said_attitude)
+
+
+def _oriented(
+    state: FrameState,
+    asked: Asked,
+    attitude: Callable[[Chain, Floats, Floats, Asked], Floats],
+) -> FrameState:
     chain, plane = asked.reading.tables, state.plane
     assert chain is not None  # else no code has this act
     if plane is None or plane.angles:
@@ -108,7 +128,7 @@ def orient(state: FrameState, asked: Asked) -> FrameState:
     _check_ways(chain, asked)
     tilted = np.array(plane.turned)
     which = f"which attitude {asked.code} takes"
-    angles = _attitude(chain, tilted, standing(chain, state, asked, which, PLANE), asked)
+    angles = attitude(chain, tilted, standing(chain, state, asked, which, PLANE), asked)
     turned = carried(chain, tilted, angles)
     if np.abs(turned[2] - [0.0, 0.0, 1.0]).max() > FLAT:
         raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
@@ -174,6 +194,52 @@ def _check_ways(chain: Chain, asked: Asked) -> None:
 
 def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> Floats:
     """Return the angles (axes,) that the control takes. Raises ActError."""
+    angles, free = _possible(chain, tilted, standing, asked)
+    angles = _nearest(angles, standing, asked)
+    if free is not None and abs(_spin(carried(chain, tilted, angles))) > EQUAL:
+        raise ActError(
+            "GX213",
+            f"{asked.code}: {chain.letters[free]} is free in this plane, and no manual "
+            "says whether it turns",
+            "let the CAM turn X of the plane along X of the machine, or write it without a plane",
+        )
+    return angles
+
+
+def _said_attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> Floats:
+    """Return the angles (axes,) that P chooses. Raises ActError."""
+    angles, free = _possible(chain, tilted, standing, asked)
+    if free is not None:
+        message = f"the plane leaves {chain.letters[free]} free, and where it turns is not certain"
+        raise ActError("GX213", message, "let the CAM write the positions without a plane")
+    way = asked.written.get("P", 0.0)
+    if not way:
+        stands = np.abs(angles - standing).max(axis=1) <= EQUAL
+        if not stands.any():
+            message = "the axes do not stand as the plane asks, and are not told to turn"
+            raise ActError("GX213", message, "turn them exactly there before, or say _DIR")
+        return np.asarray(angles[stands][0])
+    if np.ptp(angles, axis=0).max() <= EQUAL:
+        return np.asarray(angles[0])
+    by = asked.reading.control.get("swivel-reference")
+    if by not in chain.letters:
+        message = "two attitudes give this plane, and by which axis one is chosen is not known"
+        said = f'swivel-reference = "{chain.letters[0]}" in [control] of the machine file'
+        hint = f"say {said}, if it is that one"
+        raise ActError("GX213", message, hint)
+    column = chain.letters.index(str(by))
+    values = angles[:, column] * way
+    chosen = values >= values.max() - APART
+    if chain.axes[column].limits is None or np.ptp(angles[chosen], axis=0).max() > EQUAL:
+        message = f"which attitude has the lower {by} is not certain"
+        raise ActError("GX213", message, f"say limits in [axis.{by}] that leave one turn of it")
+    return np.asarray(angles[chosen][0])
+
+
+def _possible(
+    chain: Chain, tilted: Floats, standing: Floats, asked: Asked
+) -> tuple[Floats, int | None]:
+    """Return the attitudes (n, axes) within limits, and the axis that is free. Raises ActError."""
     found = attitudes(chain, tilted[:, 2][None, :])
     state = State(int(found.state[0]))
     if state is State.UNREACHABLE:
@@ -187,15 +253,7 @@ def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> F
     angles = np.where(wraps, nearest, angles[0])[allowed[0]]
     if not len(angles):
         raise ActError("GX213", f"{asked.code}: no attitude is within the limits of the axes")
-    angles = _nearest(angles, standing, asked)
-    if state is State.POLE and abs(_spin(carried(chain, tilted, angles))) > EQUAL:
-        raise ActError(
-            "GX213",
-            f"{asked.code}: {chain.letters[found.free or 0]} is free in this plane, and no manual "
-            "says whether it turns",
-            "let the CAM turn X of the plane along X of the machine, or write it without a plane",
-        )
-    return angles
+    return angles, found.free if state is State.POLE else None
 
 
 def _nearest(angles: Floats, standing: Floats, asked: Asked) -> Floats:

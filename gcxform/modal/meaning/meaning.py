@@ -96,15 +96,18 @@ ACT_ORDER = (
     "preset-restore",
     "store-home",
     "orient",
+    "swivel",
     "home",
     "machine",
     "probe",
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 STILL_WORDS = frozenset("NS")
-OWN_MOVES = frozenset({"orient", "home", "machine", "probe"})
+ORIENTING = frozenset({"orient", "swivel"})
+"""Acts that turn the tool onto a plane."""
+OWN_MOVES = ORIENTING | {"home", "machine", "probe"}
 FRAMING = frozenset(
-    {"diameter", "orient", *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
+    {"diameter", *ORIENTING, *ACT_ORDER[ACT_ORDER.index("work") : ACT_ORDER.index("store-home")]}
 )
 """Acts that folding takes into the words of moves, so that their codes are not written."""
 PRESETS = frozenset({"preset", "set-work", "store-home"})

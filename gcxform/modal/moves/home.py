@@ -17,7 +17,7 @@ from gcxform.modal.frames.followed_tips import turned_tip
 from gcxform.modal.frames.track import LEFT, Track
 from gcxform.modal.line_notes import WayHome, call_of
 from gcxform.modal.meaning.calls import CALL
-from gcxform.modal.meaning.meaning import OWN_MOVES, Act
+from gcxform.modal.meaning.meaning import ORIENTING, OWN_MOVES, Act
 from gcxform.modal.moves.blind_moves import note_way
 from gcxform.modal.moves.rows import Own
 from gcxform.modal.moves.spindle_and_probe import probe
@@ -40,7 +40,7 @@ def own_moves(track: Track, line: int) -> Own | None:
             _refuse_polar(track, line, act.code)
         if act.name == CALL:
             return _called(track, line)
-        if act.name == "orient":
+        if act.name in ORIENTING:
             return _oriented(track, line, act.code)
         if act.name == "home":
             return _home(track, line, _reference(track, line, act))

@@ -15,16 +15,18 @@ from gcxform.modal.frames.followed_tips import BY_RTCP
 from gcxform.modal.frames.planes import EQUAL
 from gcxform.modal.frames.track import Track
 from gcxform.modal.meaning.calls import CALL
-from gcxform.modal.meaning.meaning import OWN_MOVES, TAKES_MOTION
+from gcxform.modal.meaning.meaning import ORIENTING, OWN_MOVES, TAKES_MOTION
 from gcxform.modal.moves.rows import Stretches
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints
 
-ORIENT, FOLLOW = "orient", "follow-tip"
-WORDED = frozenset({CALL, *TAKES_MOTION} - OWN_MOVES | {ORIENT})
+FOLLOW = "follow-tip"
+WORDED = frozenset({CALL, *TAKES_MOTION} - OWN_MOVES | ORIENTING)
 """Acts whose block moves by no words of axes: it has none, or they are theirs."""
 BY_TABLES = {
-    ORIENT: "tilted planes go with the table as its axes stand in the machine file",
+    **dict.fromkeys(
+        ORIENTING, "tilted planes go with the table as its axes stand in the machine file"
+    ),
     FOLLOW: "tips are followed on the table as its axes stand in the machine file",
 }
 BETWEEN = "between the plane and the code that turns the tool onto it"
@@ -33,7 +35,10 @@ INERT = (
     "write {} before what may turn them, and {} anew behind it; or say which M codes move "
     "no axis: inert-m in [control] of the machine file"
 )
-STILL = "a plane goes with the table: write G69 before the axis turns, and the plane anew behind it"
+STILL = (
+    "a plane goes with the table: write G69 or CYCLE800() before the axis turns, and the plane "
+    "anew behind it"
+)
 UNTIPPED = "draw the tool back, and write G49 before"
 
 
@@ -73,8 +78,8 @@ class InPlanes:
             self._refuse(turning, "a rotary axis turns while the control follows the tip", BY_RTCP)
         elif len(turning):
             self._refuse(turning, "a rotary axis turns in a tilted plane", STILL)
-        elif ORIENT not in said:
-            what, hint = "a tilted plane", INERT.format("G69", "the plane")
+        elif not said & ORIENTING:
+            what, hint = "a tilted plane", INERT.format("G69 or CYCLE800()", "the plane")
             if plane.tip:
                 what = "a tip that is followed"
                 hint = f"draw the tool back, and {INERT.format('G49', 'G43.4')}"

@@ -181,7 +181,7 @@ class Blocks(Contours):
     def _take_alone(self, line: Line, item: gx.Item) -> None:
         if line.axes or line.centres or line.codes or line.motion:
             self.refuse("this stands in a block of its own", item, "give it its own line")
-        if item.name.upper().startswith("CYCLE800"):
+        if item.name.upper().startswith("CYCLE800") and not self.swivelled:
             self.end_swivel()
 
     def _check_alone(self, line: Line) -> None:

@@ -10,11 +10,12 @@ from gcxform_plugins.dialects.siemens.asides import TELLING
 from gcxform_plugins.dialects.siemens.axes_of_lines import MILLING
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR
-from gcxform_plugins.dialects.siemens.reading import WHY, Statements
+from gcxform_plugins.dialects.siemens.reading import WHY
 from gcxform_plugins.dialects.siemens.structure import HEAD, code
+from gcxform_plugins.dialects.siemens.swivelling import Swivelling
 
 
-class CycleCalls(Statements):
+class CycleCalls(Swivelling):
     """Takes calls into a line."""
 
     def _call(self, line: Line, item: gx.Item) -> None:
@@ -32,12 +33,20 @@ class CycleCalls(Statements):
                 self.holes = cycles.row(given, stands) if name[-1] == "1" else cycles.circle(given)
             except cycles.CycleError as error:
                 self.refuse(f"{name}: {error}", item)
+        elif line.modal is not None:
+            self.refuse(f"MCALL of {name} is not read", item)
         elif self._quiet(name, given):
             self._one(line, "alone", item)
             if name != "CYCLE800":
                 self._goes_along(line, item, "", self.text_of(item))
-            elif self.reading.asides:
-                line.asides.append(self.text_of(item))
+            else:
+                self.leave_plane(line)
+                if self.reading.asides:
+                    line.asides.append(self.text_of(item))
+        elif name == "CYCLE800" and self.may_swivel(given):
+            self._one(line, "alone", item)
+            self.leave_plane(line)
+            self.take_swivel(line, item, given)
         else:
             why = WHY.get(name, f"{name}(...) is not read")
             self.refuse(f"{why}, with these arguments" if name in WHY else why, item)

@@ -80,7 +80,10 @@ kept as it stands, with all that is lost behind it.
 | all four, where moves are written anew for the same control | they go along | |
 | FGROUP(X,Y,Z), FGROUP() | what F is of anyway: left out, or goes along; others: refused | F 105 |
 | M7 M8 in one block | both are on: two blocks | [K] |
-| CYCLE800 | only alone, empty, or without angles, with two rotary axes at 0 | SW 481 |
+| CYCLE800 | only alone; empty, or without angles, with two rotary axes at 0 | SW 481 |
+| CYCLE800 with angles, on a table | a plane, by _MODE of three turns: `swivelling.py` | SW 481 |
+| its _DIR | by the value of `[control] swivel-reference`, or the one attitude in limits | SW 481 |
+| its _ST, other than 0 and 10; solid and projected angles; in a frame | refused | [K] |
 | CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | GMODE, DMODE, AMODE | 0; the plane in force; absolute, seconds; else refused | X |
@@ -197,6 +200,8 @@ class Siemens(gx.Dialect):
         "G43": v.frame("tool-length", "length", "H"),
         "G53": v.frame("non-modal", "machine"),
         "G54.1": v.frame("frame", "work", "P"),
+        **{code: v.barrier("transform", v.TRANSFORM, "PIJK") for code in ("G68.2", "G53.1")},
+        "G69": v.frame("rotation", "no-rotate"),
         "G65.1": v.bores("XYZ"),
         "G65.2": v.cuts("XYZ", ends="at XYZ"),
         "G9": v.at_end("non-modal"),
@@ -230,6 +235,7 @@ class Siemens(gx.Dialect):
         gx.Setting("edge-after-tool-change", "siemens: D behind M6 (MD20270)", (0, 1)),
         gx.Setting("mcall-in-subprograms", "siemens: MCALL drills in subprograms", ("acts",)),
         gx.Setting("section-repeats", "siemens: what P of REPEAT counts", ("further", "in-all")),
+        gx.Setting("swivel-reference", "siemens: axis that _DIR of CYCLE800 is about", (*"ABC",)),
         gx.Setting("orientation-path", "siemens: how angles change in TRAORI", ("angles",)),
     )
     block_rule = gx.BlockRule(m_order_chosen=True, unknown_m=gx.MCode("user", loses_position=True))
@@ -238,4 +244,5 @@ class Siemens(gx.Dialect):
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
         spelled={"M128": "TRAORI", "M129": "TRAFOOF"},
+        planes={"G68.2": "define-plane", "G53.1": "swivel"},
     )

@@ -57,7 +57,9 @@ AGAINST = {
     "LINEAR_ONLY": ARCS,
     "XY_ARCS": ARCS,
     "NO_CYCLES": re.compile(rf"{CODE}(?:CYCLE8[1-9]|HOLES[12])(?![A-Z0-9_])"),
-    "WORKPIECE_FRAME": re.compile(rf"{CODE}A?(?:TRANS|ROTS?|SCALE|MIRROR)[ \t]+[A-Z]"),
+    "WORKPIECE_FRAME": re.compile(
+        rf"{CODE}(?:A?(?:TRANS|ROTS?|SCALE|MIRROR)[ \t]+[A-Z]|CYCLE800[ \t]*\([ \t]*[^) \t])"
+    ),
 }
 """Where these stand in a line that stays, a pass cannot do what it is for."""
 

@@ -17,6 +17,7 @@ from gcxform_plugins.dialects.siemens.cycles import PATH as KEPT_PATH
 from gcxform_plugins.dialects.siemens.gathering import gathered
 from gcxform_plugins.dialects.siemens.offsets import FURTHER, WORK
 from gcxform_plugins.dialects.siemens.place import text_of
+from gcxform_plugins.dialects.siemens.swivelling import PLANE, TURN
 from gcxform_plugins.dialects.siemens.tapping import CODE, Tap, lines_of, turned
 
 OFFSETS = {name: f"G{number}" for number, name in WORK.items()}
@@ -90,8 +91,12 @@ class Lines(gx.Speller):
         slash = SLASH.match(block)
         if dict(words).get("G") in KEPT_CALLS:
             said = [*self._kept_call(dict(words), asides)]
+        elif {("G", code[1:]) for code in (PLANE, TURN)} & {*words}:
+            self.lose()
+            said = [*self._numbered(dict(words), asides)]
         else:
-            said = [*asides, *self._said(words)]
+            plain = [*self._said(words)]
+            said = [*asides, *plain] if plain else [*self._numbered(dict(words), asides)]
         found = [f"{slash[1]}{line}" if slash else line for line in said]
         if comments:
             lead = ";" if comments[0].startswith(PATH) else "; "
@@ -135,9 +140,14 @@ class Lines(gx.Speller):
         """Yield the call of a cycle that stays, and before it an edge, and take its end."""
         if self.waits:
             yield self._edge
-        yield f"N{values['N']} {' '.join(asides)}" if "N" in values else " ".join(asides)
+        yield from self._numbered(values, asides)
         self.height = Decimal(values["Z"]) if "Z" in values else None
         self.spindle, self.owed = "", True
+
+    def _numbered(self, values: dict[str, str], asides: list[str]) -> Iterator[str]:
+        """Yield what goes along in a line of its own, if anything does."""
+        if asides:
+            yield f"N{values['N']} {' '.join(asides)}" if "N" in values else " ".join(asides)
 
     def _check_m(self, names: list[str]) -> None:
         own = [name for name in names if name[0] == "M" and name[1:] in map(str, OWN)]

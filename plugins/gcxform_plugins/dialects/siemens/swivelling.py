@@ -1,0 +1,128 @@
+"""CYCLE800 that turns a table onto a plane, where all positions have to be known.
+
+    CYCLE800(_FR, _TC, _ST, _MODE, _X0, _Y0, _Z0, _A, _B, _C, _X1, _Y1, _Z1, _DIR, _FR_I, _DMODE)
+
+A point p of the plane is at (X0, Y0, Z0) + R ((X1, Y1, Z1) + p), and R three turns about axes that
+go along, in the order that _MODE says (public specification of CAM posts for this cycle; a job that
+a CAM wrote for two machines and two controls). _DIR chooses the attitude: the lower or the higher
+value of one axis, which the machine's builder has set (operating manual). Where that is followed is
+in `gcxform/modal/frames/planes.py`: to it this is G68.2 and G53.1. What is drawn back before, or
+follows the tip, moves X, Y and Z: where they are is lost.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from decimal import Decimal
+
+import numpy as np
+
+import gcxform as gx
+from gcxform_plugins.dialects.siemens.cycles import CycleError
+from gcxform_plugins.dialects.siemens.frames import Frame
+from gcxform_plugins.dialects.siemens.line import Line
+from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
+from gcxform_plugins.dialects.siemens.reading import Statements
+
+ORDERS = {"57": "XYZ", "45": "XZY", "54": "YXZ", "30": "YZX", "39": "ZXY", "27": "ZYX"}
+"""The axes of the three turns, by _MODE; solid and projected angles are other modes."""
+NEW = frozenset(("", "0", "10"))
+"""_ST of a plane that is no addition to another one; its ten lets the tip stay where it is."""
+PLANE, TURN, LEAVE = "G68.2", "G53.1", "G69"
+"""The codes of blocks that say a plane, turn the table onto it, and leave it."""
+ENDS = "0"
+"""_TC that ends a plane."""
+G17 = frozenset(("", "0", "1"))
+MOST = 16
+APART = "CYCLE800 that turns a table, and more than its plane is in force"
+ALONE = "write it where no frame of the program is in force, in G17, and outside of MCALL"
+
+
+def plane_of(given: Sequence[str]) -> tuple[list[str], str]:
+    """Return the words that say the plane, and those that turn the table. Raises CycleError."""
+    values = [*given, *[""] * (MOST - len(given))]
+    if len(given) > MOST or values[2] not in NEW or values[3] not in ORDERS:
+        raise CycleError("_ST or _MODE asks for a plane that is added, or said in another way")
+    if values[15] not in G17:
+        raise CycleError("_DMODE asks for another plane than G17")
+    numbers = [_number(each) for each in values[4:14]]
+    before, angles, behind, way = numbers[:3], numbers[3:6], numbers[6:9], numbers[9]
+    if way not in (-1, 0, 1):
+        raise CycleError("_DIR is not -1, 0 or 1")
+    turned = np.eye(3)
+    for axis, angle in zip(ORDERS[values[3]], angles, strict=True):
+        turned = turned @ _turn(axis, float(angle))
+    zero = [float(value) for value in before] + turned @ [float(value) for value in behind]
+    words = zip("XYZIJK", (*zero.tolist(), *_euler(turned)), strict=True)
+    numbers_said = [f"{letter}{Decimal(repr(value)):f}" for letter, value in words]
+    return [PLANE, *numbers_said], f"{TURN} P{int(way)}"
+
+
+def _number(text: str) -> Decimal:
+    if text and not gx.NUMBER.fullmatch(text):
+        raise CycleError("an argument is not a plain number")
+    return Decimal(text or "0")
+
+
+def _turn(axis: str, angle: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
+    """Return the turn (3, 3) about an axis, degrees; exact at right angles."""
+    quarter = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
+    radians = math.radians(angle)
+    c, s = quarter.get(angle % 360.0, (math.cos(radians), math.sin(radians)))
+    k = "XYZ".index(axis)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    made = np.eye(3)
+    made[i, i], made[i, j], made[j, i], made[j, j] = c, -s, s, c
+    return made
+
+
+def _euler(turned: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> tuple[float, ...]:
+    """Return the angles about Z, X', Z'' of a turn (3, 3), degrees, the second from 0 to 180."""
+    tilt = math.atan2(math.hypot(turned[0, 2], turned[1, 2]), turned[2, 2])
+    if turned[0, 2] == turned[1, 2] == 0.0:
+        first, last = 0.0, math.atan2(turned[1, 0], turned[0, 0])
+    else:
+        first = math.atan2(turned[0, 2], -turned[1, 2])
+        last = math.atan2(turned[2, 0], turned[2, 1])
+    return tuple(math.degrees(angle) for angle in (first, tilt, last))
+
+
+class Swivelling(Statements):
+    """Takes CYCLE800; `swivelled`: a plane is in force, by which words count."""
+
+    swivelled = False
+
+    def may_swivel(self, given: Sequence[str]) -> bool:
+        """Whether a plane may be followed: on its own control, or folded; on a known table."""
+        reading = self.reading
+        own = reading.asides or reading.turns_plainly or not reading.crosses
+        return own and not reading.stays and reading.tables is not None and given != [""]
+
+    def take_swivel(self, line: Line, item: gx.Item, given: Sequence[str]) -> None:
+        """Take a plane, or its end. Raises InputError."""
+        if given[1:2] == [f'"{ENDS}"']:
+            return
+        try:
+            plane, attitude = plane_of(given)
+        except CycleError as error:
+            self.refuse(f"CYCLE800: {error}", item)
+        apart = self.following or self.comp or self.drilling is not None or self.plane != "XY"
+        if apart or self.frame != Frame():
+            self.refuse(APART, item, ALONE)
+        stays = self.reading.asides and not self.reading.turns_plainly
+        said = gx.Speller.aside(self.text_of(item)) if stays else ""
+        line.ahead += [" ".join(["G90", *plane, said]).rstrip(), f"G0 {attitude}"]
+        self.said, self.said_steps, self.swivelled = "", False, True
+        self._lose_all()
+
+    def leave_plane(self, line: Line) -> None:
+        """End a plane: where X, Y and Z are without it is not known."""
+        if self.swivelled:
+            line.ahead.append(LEAVE)
+            self.swivelled = False
+            self._lose_all()
+
+    def _lose_all(self) -> None:
+        self.place.lose({*LINEAR, *(self.place.named & {*ROTARY})})
+        self.loses |= {*LINEAR}
