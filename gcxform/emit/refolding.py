@@ -26,6 +26,7 @@ from gcxform.stamps.comment import OPEN_SEAL, is_stamp
 SLASHED = "a slash: a switch decides on lines that have become others"
 OTHERS = "this line would change, and stands in another program"
 UNSAID = "what this line became cannot be said in its place"
+CALLS = "what is called behind this line would be another"
 DIFFERS = "this line becomes another each time it is executed"
 SETS = "what this line sets cannot be said where it is written out"
 ROUNDS = 12
@@ -93,7 +94,10 @@ class _Refolding:
                 behind, unit = unit.end, next(units, None)
                 if visit <= behind:
                     continue
-            why = self._spell_one(lines.spelled(line, first, stop), line)
+            text = lines.spelled(line, first, stop)
+            why = self._spell_one(text, line)
+            if not why and len(text or ()) > 1 and visit in self.translator.called_behind:
+                why = CALLS
             if why:
                 wrong[visit] = self._named(line, why)
         return wrong

@@ -60,8 +60,7 @@ class Translator(LineWriting):
         super().__init__(lines, file, dialect)
         self.reading, self.comes_back = reading, reading.asides
         self.at = self.visit = 0
-        self.own = len(lines)
-        """How many lines are those of the program; behind them are those of files that it calls."""
+        self.own = len(lines)  # those of the program; behind them are those of files that it calls
         self.annexed: Annexed | None = None
         self.assumed: dict[str, None] = {}
         """What a line was taken to mean that it does not say, in sentences."""
@@ -70,17 +69,18 @@ class Translator(LineWriting):
         self.in_place: dict[int, str] = {}
         """Lines that stand in no program that is written anew, and why."""
         self.counted: set[int] = set()
-        """Lines, from 0, that count from where an axis stands, as was found when they were read."""
+        """Lines, from 0, that count from where an axis stands."""
         self.jumps: list[tuple[int, int]] = []
         """Each execution of a line that does not stand behind the one before, with that line."""
         self._behind = -1
         self.framed: list[tuple[int, Any]] = []
         """Each `frame` there was, with the first execution of a line behind it."""
         self.loses: set[str] = set()
-        """Axes, and F for the feed, that are lost before the next block: it is then not known where
-        they are, or what is in force."""
+        """Axes, and F for the feed, of which nothing is known any more at the next block."""
         self.loses_behind: dict[int, str] = {}
         """Axes that are lost behind all blocks of an execution of a line, by its number."""
+        self.called_behind: set[int] = set()
+        """Executions of lines behind each block of which a cycle is called."""
         self.again: set[int] = set()
         """Lines that may be executed again, as only the machine knows: they have to stay."""
         self.stay: frozenset[int] = frozenset()

@@ -230,4 +230,25 @@ MUTATIONS = (
         "self.owed |= NOTHING",
         f"{CASES}-owed]",
     ),
+    Mutation(
+        "own lines: a cycle may be called behind each piece of a line",
+        "gcxform/emit/refolding.py",
+        "if not why and len(text or ()) > 1 and visit in self.translator.called_behind:",
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/siemens/own-lines-holes-lean]",
+    ),
+    Mutation(
+        "own lines: what MCALL drills goes without it",
+        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        "return [*loops, *self._holes_of_mcall()]",
+        "return [*loops]",
+        "tests/test_corpus.py::test_case[dialects/siemens/own-lines-holes-lean]",
+    ),
+    Mutation(
+        "own lines: MCALL of another cycle goes with the one before",
+        "plugins/gcxform_plugins/dialects/siemens/in_place.py",
+        "yield first, behind - (not ends)",
+        "yield first, min(behind, self.main.stop - 1)",
+        "tests/test_corpus.py::test_case[dialects/siemens/own-lines-holes-lean-again]",
+    ),
 )

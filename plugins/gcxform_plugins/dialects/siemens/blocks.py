@@ -163,6 +163,8 @@ class Blocks(Contours):
         yield self.block_of(line)
         yield from line.behind
         if self.drilling is not None and (line.axes or line.centres):
+            if not self.drilling.kept:
+                self.called_behind.add(self.visit)
             yield from self._holes(self.drilling)
 
     def _before(self, line: Line) -> Iterator[str]:

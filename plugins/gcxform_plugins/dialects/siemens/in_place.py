@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from itertools import pairwise
 
 import gcxform as gx
 from gcxform import vocabulary as v
 from gcxform_plugins.dialects.siemens.axes_of_lines import words_of
 from gcxform_plugins.dialects.siemens.computing import COMPUTED
-from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH
+from gcxform_plugins.dialects.siemens.cycles import HOLE, PATH, READ
 from gcxform_plugins.dialects.siemens.frames import Frame, words_inside
 from gcxform_plugins.dialects.siemens.going_along import HEAD, goes_along
 from gcxform_plugins.dialects.siemens.going_along import bare as bare_line
@@ -25,6 +26,9 @@ STEPPED = re.compile(  # it begins with letters that may be looked for one by on
     r"[=Gg](?:(?<==)[ \t]*[Ii][Cc][ \t]*\("
     r"|(?<=[Gg])(?<![A-Za-z0-9_][Gg])[ \t]*0*91(?![0-9.]))"
 )
+MODAL = re.compile(r"(?<![A-Z0-9_])MCALL(?![A-Z0-9_])", re.IGNORECASE)
+DRILLS = re.compile(rf"{MODAL.pattern}[ \t]*(?:{'|'.join(READ)})[ \t]*\(", re.IGNORECASE)
+ENDS = re.compile(rf"{MODAL.pattern}[ \t]*$", re.IGNORECASE)
 CALLED_CYCLE = re.compile(r"[A-Z_][A-Z0-9_]*", re.IGNORECASE)
 NUMBER = re.compile(r"N[0-9]+[ \t]+")
 GLUED = re.compile(r"[0-9.][A-Z]", re.IGNORECASE)
@@ -106,8 +110,17 @@ class InPlace(Learning):
         return f"{head[0].rstrip()} {text}" if head and head[0].strip() else text
 
     def loops(self) -> list[tuple[int, int]]:
-        """Return the loops of the main program."""
-        return [(part.first, part.last) for part in self._parts() if part.kind != "IF"]
+        """Return the loops of the main program, and what MCALL of a cycle drills behind."""
+        loops = [(part.first, part.last) for part in self._parts() if part.kind != "IF"]
+        return [*loops, *self._holes_of_mcall()]
+
+    def _holes_of_mcall(self) -> Iterator[tuple[int, int]]:
+        """Yield the lines in which MCALL of a cycle that is read drills."""
+        said = [line for line in self.main if MODAL.search(code(self.lines[line]))]
+        for first, behind in pairwise([*said, self.main.stop]):
+            if DRILLS.search(code(self.lines[first])):
+                ends = behind < self.main.stop and ENDS.search(code(self.lines[behind]))
+                yield first, behind - (not ends)
 
     def branches(self) -> list[tuple[int, ...]]:
         """Return the lines of IF with ELSE and ENDIF in the main program."""
