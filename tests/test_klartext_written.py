@@ -340,7 +340,8 @@ def test_words_become_klartext_in_its_idiom_and_words_again():
     [
         ("G18 G2 X5. Y1. Z5. I5. K0.", "out of XY"),
         ("G20 G0 X5.", "one unit"),
-        ("G43 H2 Z5.", "another tool"),
+        ("G43 H2 Z5.", "which tool is in the spindle"),
+        ("T1 M6\nG0 X0. Y0. Z0.\nG43 H2 Z5.", "another tool"),
         ("G93 G1 X5. F2.", "G93"),
         ("G92 X5.", "G92"),
         ("G55 G0 X5.", "G55"),

@@ -30,17 +30,21 @@ def spelled_out(
     asides: bool = False,
     seals: bool = False,
     drills: bool = True,
+    tool: int | None = None,
 ) -> tuple[bytes, list[int], Counter[str]]:
     """Return a program for blocks, for each of its lines the line that it is for, what is left out.
 
     `source` are lines of the program, from 0, of which the blocks are. `inert` are M codes of the
     target that leave its axes where they stand; `asides`: whether a translator of the language has
     put into comments what goes along. `seals`: its last comment is a seal that is still open.
-    `drills`: moves of holes may be said as cycles.
+    `drills`: moves of holes may be said as cycles. `tool`: the one in the spindle before the first
+    block, where that is known.
     Raises InputError for a block that cannot be said.
     """
     speller = kind(PurePath(file).stem, inch_first(blocks, inch))
     speller.inert, speller.asides, speller.drills = inert, asides, drills
+    if tool is not None:
+        speller.in_spindle = str(tool)
     lines, of = list[str](), list[int]()
     for block, line in zip(blocks, source, strict=True):
         text = block.decode("latin-1").rstrip("\r\n")

@@ -40,7 +40,8 @@ class Speller(ABC):
     block that was heard last, if its program called it so, `tool_told` what is told of it there.
     `asides`: what goes along as it was
     programmed stands in comments, which nobody else than a translator can have written.
-    `drills`: moves of holes may be said as cycles.
+    `drills`: moves of holes may be said as cycles. `in_spindle` is the number of the tool there,
+    which is known before the first block where the user has said it.
     `names_planes`: an arc names the axes of its plane by those of its centre, and none is in force.
     """
 
@@ -48,6 +49,7 @@ class Speller(ABC):
     inert: frozenset[str] = frozenset()
     asides: bool = False
     drills: bool = True
+    in_spindle: str = ""
     tool_name: str = ""
     tool_told: str = ""
 
@@ -91,6 +93,13 @@ class Speller(ABC):
         words = [each for each in words if not asides or each != (ALONG[0], ALONG[1:])]
         others = [each.translate(SHOWN) for each in comments if not each.startswith(ASIDE)]
         return asides, others, words
+
+    def other_length(self, number: str) -> UnspeakableError:
+        """Return why the length of a tool has no words that is not the one in the spindle."""
+        if self.in_spindle not in ("", "0"):
+            return UnspeakableError("the length of another tool than the one in the spindle")
+        hint = f"write T and M6 before; or say tool = {number} in [input], if it is in the spindle"
+        return UnspeakableError("a length, and which tool is in the spindle is not known", hint)
 
     @abstractmethod
     def lines(self, block: str) -> list[str]:

@@ -207,6 +207,7 @@ class SpelledOut:
             anew,
             self._seals,
             not (anew and NO_CYCLES in facts_after(self.plan.path_passes)),
+            self.plan.machine_reading.tool,
         )
         name = self.plan.target.name
         self.told = tuple(f"{code} is left out for {name}: {n}" for code, n in left_out.items())

@@ -950,8 +950,8 @@ MUTATIONS = (
     Mutation(
         "klartext: the length of another tool is said by TOOL CALL",
         LINES,
-        'if "G43" in codes and bare(values.pop("H", self.in_spindle)) != self.in_spindle:',
-        "if False:",
+        'bare(values.pop("H", self.in_spindle))) != self.in_spindle:',
+        'bare(values.pop("H", self.in_spindle))) is None:',
         f"{WRITTEN}::test_what_klartext_has_no_words_for_is_refused",
     ),
     Mutation(

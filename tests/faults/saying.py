@@ -446,4 +446,11 @@ MUTATIONS = (
         "points_on_arcs(path, row[inner], part / 2)",
         "tests/test_corpus.py::test_case[dialects/across/turns-for-fanuc]",
     ),
+    Mutation(
+        "languages: no tool is in the spindle before the program",
+        "gcxform/emit/spelled_out.py",
+        "if tool is not None:",
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/across/tool-in-the-spindle]",
+    ),
 )

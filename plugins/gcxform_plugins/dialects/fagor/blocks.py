@@ -19,6 +19,7 @@ ALONG = 'write G17 before; or say tool-length-axis = "Z" in [control], if it sta
 NO_OFFSET = "G53 has cancelled the work offset, and where the zero is then only the control knows"
 IN_MACHINE = frozenset(("", "G0", "G1", "G90", "M3", "M4", "M5", "M7", "M8", "M9"))
 """Codes that are read in lines to places of the machine."""
+NO_TOOL = "write T and M6 before"
 WHOLE = re.compile(r"[0-9]+\Z")
 SHIFTS = "another work offset or tool length: whether it makes up for the difference is not certain"
 
@@ -44,7 +45,8 @@ class Blocks(gx.Translator):
         self.bars: dict[str, tuple[str, str]] = {}
         self.incremental = self.following = self.taken_away = False
         self.corners = self.kinematics = ""
-        self.tool = self.edge = self.in_spindle = ""
+        self.tool = self.edge = ""
+        self.in_spindle = "" if self.reading.tool is None else str(self.reading.tool)
         self.changing = self.across = self.long = False
         self.bare = self.machine = self.comp = False
         self.work, self.shifted = "", set[str]()
@@ -330,7 +332,7 @@ class Blocks(gx.Translator):
             return "G49"
         if self.in_spindle in ("", "0"):
             what = "D is about the tool in the spindle, and which that is is not known"
-            self.refuse(what, item, "write the tool change before")
+            self.refuse(what, item, NO_TOOL if self.in_spindle else tables.IN_SPINDLE)
         return f"G43 H{self.in_spindle}"
 
     # --- statements ---

@@ -135,7 +135,7 @@ class Lines(gx.Speller):
             yield "D1"
         elif moves or before != self.length or not {"G43", "G49"}.isdisjoint(names):
             if self.length not in ("0", self.in_spindle):
-                raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+                raise self.other_length(self.length)
             self.waits, self.bare, self.shifted = False, self.length == "0", True
             yield "D0" if self.bare else "D1"
 

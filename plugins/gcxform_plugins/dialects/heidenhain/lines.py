@@ -60,7 +60,7 @@ class Lines(CallsKept):
         self.place: dict[str, Decimal] = {}
         self.motion, self.plane = "G0", "G17"
         self.steps = self.over = self.bounded = False
-        self.tool = self.called = self.in_spindle = self.speed = self.spindle = ""
+        self.tool = self.called = self.speed = self.spindle = ""
         self.deltas = ""
         self.side = self.waits = " R0"
         self.turns, self.shift = Decimal(0), dict.fromkeys(LINEAR, Decimal(0))
@@ -176,8 +176,8 @@ class Lines(CallsKept):
             behind = self.deltas
             if "M6" not in self.inert:
                 self.lose()
-        if "G43" in codes and bare(values.pop("H", self.in_spindle)) != self.in_spindle:
-            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+        if "G43" in codes and (length := bare(values.pop("H", self.in_spindle))) != self.in_spindle:
+            raise self.other_length(length)
         if told := [c for c in codes if OF_DELTA.get(c, "") not in self.deltas]:
             raise gx.UnspeakableError(f"{told[0]}, and TOOL CALL has told no {OF_DELTA[told[0]]}")
         if "G43.1" in codes:

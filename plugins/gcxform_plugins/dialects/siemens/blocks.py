@@ -20,7 +20,7 @@ from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.going_along import UNITS
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, NOBODYS, STEP, Line
-from gcxform_plugins.dialects.siemens.moves import OF_WHICH, rest_of
+from gcxform_plugins.dialects.siemens.moves import IN_SPINDLE, OF_WHICH, rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 from gcxform_plugins.dialects.siemens.tapping import CODE, LINES, SPOS, Tap, tap_at, turned
 
@@ -232,7 +232,7 @@ class Blocks(Contours):
         if self.changed and self.edge is None:
             self.refuse("a cycle, and which edge is in force behind M6 is not known")
         if self.edge == NOBODYS:
-            self.refuse(OF_WHICH, None, "write T and M6 before")
+            self.refuse(OF_WHICH, None, IN_SPINDLE)
         self.check_plane(None)
         self.check_offset(None)
         if (self.feed_other if hole.kept else self.feed_open) and not hole.own_feed:

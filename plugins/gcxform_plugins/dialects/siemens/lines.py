@@ -72,7 +72,7 @@ class Lines(gx.Speller):
 
     def __init__(self, name: str, inch: bool) -> None:
         super().__init__(name, inch)
-        self.tool = self.in_spindle = self.length = ""
+        self.tool = self.length = ""
         self.waits = self.steps = False
         self.height: Decimal | None = None
         self.spindle = self.speed = self.motion = self.feed = ""
@@ -226,7 +226,7 @@ class Lines(gx.Speller):
     def _edge(self) -> str:
         """The word for the length in force. Raises UnspeakableError."""
         if self.length not in (NO_LENGTH, self.in_spindle):
-            raise gx.UnspeakableError("the length of another tool than the one in the spindle")
+            raise self.other_length(self.length)
         self.waits, self.shifted = False, True
         return "D0" if self.length == NO_LENGTH else "D1"
 

@@ -16,6 +16,7 @@ EDGE = (
     "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
 )
 OF_WHICH = "D1 of the tool in the spindle, and which that is is not known"
+IN_SPINDLE = "write T and M6 before; or say tool = 1 in [input], if it is tool 1"
 ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
 START = (
     "write G1 in this block, or G0 if the way is clear; or say "
@@ -116,7 +117,7 @@ class Moves(CycleCalls):
         if item is None:
             return
         if self.edge == NOBODYS and self._counts_length(line):
-            self.refuse(OF_WHICH, item, "write T and M6 before")
+            self.refuse(OF_WHICH, item, IN_SPINDLE)
         if self.changed and self.edge is None and self._counts_length(line):
             message = "behind M6 a setting of the control decides which edge is in force (MD20270)"
             self.refuse(message, item, EDGE)

@@ -90,7 +90,7 @@ class Statements(gx.Translator):
         self.frame = Frame()
         self.following = self.comp = self.changed = False
         self.orientation = "", ""
-        self.tool: str | None = None
+        self.tool = None if self.reading.tool is None else str(self.reading.tool)
         self.waiting: str | None = None
         self.edge: str | None = None
         self.promised = self.straight = ""
