@@ -18,6 +18,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | G28, to a point of another kind there, or letting go of the tool length | G53 to the point |
 | G53 at a feed, where G53 is always rapid there | the place, by words of the work offset |
 | a tool length by its value (G43.1) | nothing, where `offsets` takes it into the words |
+| a tip that is followed (G43.4) | the length (G43), where `offsets` takes the rest into words |
 | a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
 | a comment that shows or logs something | a comment |
 """
@@ -38,7 +39,7 @@ AROUND = frozenset({"arc-corners", "linear-corners"})
 """What joins two moves outside under compensation, up to the dash."""
 SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL}) | AROUND
 """Acts of codes that change no position."""
-HOME, MACHINE = "home", "machine"
+HOME, MACHINE, FOLLOW = "home", "machine", "follow-tip"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
 NO_LENGTH = "no-length"
 ABORT = "ABORT"
@@ -58,12 +59,17 @@ def stores_home(dialect: type[Dialect]) -> bool:
 
 @dataclass(frozen=True)
 class Saying:
-    """From one control to another; `m_codes` and `drop` are what the user says of codes."""
+    """From one control to another; `m_codes` and `drop` are what the user says of codes.
+
+    `tips` are codes that follow a tip, where another control gets words of the axes instead, each
+    with the one that is left of it: it only takes the length of the tool.
+    """
 
     source: type[Dialect]
     target: type[Dialect]
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
+    tips: Mapping[str, str] = field(default_factory=dict)
     _known: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     @property
@@ -148,6 +154,7 @@ class Saying:
             return self.m_codes[what]
         if not self.crosses:
             return what
+        what = self.tips.get(what, what)
         if what.startswith(("(", ";")):
             tells = self.source.text_rule.tells(what)
             tells |= EXECUTED in self.drop and ABORT not in what.upper()
@@ -170,7 +177,8 @@ class Saying:
 
     def lengthens(self, what: str) -> bool:
         """Whether a code that calls a tool length by a number is the length itself there."""
-        code = self.source.codes.get(what.removeprefix(SWITCHED))
+        bare = what.removeprefix(SWITCHED)
+        code = self.source.codes.get(self.tips.get(bare, bare))
         if code is None or code.act not in NUMBERED or not self.crosses:
             return False
         return not any(other.act == code.act for other in self.target.codes.values()) and bool(

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.remedies import put_before
-from gcxform.dialect.code_translation import HOME, MACHINE
+from gcxform.dialect.code_translation import FOLLOW, HOME, MACHINE
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m
@@ -41,6 +41,8 @@ EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPI
 """Cycles whose moves can be written one by one."""
 
 
+FRAMES: Final = FRAMING | {FOLLOW}
+"""Acts of codes that `offsets` takes into the words of moves, whole or but for a tool length."""
 TURNS = frozenset({"M3", "M4", "M5"})
 UNKNOWN_M = ", if it turns no spindle and clamps nothing; m-codes in [output] has another for it"
 SET_TOOL = "set-tool"
@@ -86,6 +88,9 @@ class CodeWords:
     def _say(self, word: Word, name: str, code: Code | None, lead: bytes) -> None:
         """Write a code that sets no mode that is stated, or the one that stands for it."""
         text, said = self.draft.said(word.start, word.end), self.saying.instead(name)
+        asked, name = name, self.saying.tips.get(name, name)
+        if name != asked:
+            text, code = like(text, name), self.source.codes.get(name)
         if code is not None and code.act == HOME and (said != name or self.key.homed):
             if not self.key.homed:
                 what = f"{name}: it goes to a point of another kind there"
@@ -96,7 +101,7 @@ class CodeWords:
         if said != name:
             text = like(text, said)
         elif self.source is not self.target and code and not self.saying.agrees(name):
-            what = other_in(self.source, self.target, name, code, self.meaning)
+            what = other_in(self.source, self.target, name, code, self.meaning, asked)
             if what:
                 self._refuse(word, name, what)
         self.draft.literal(lead, text)
@@ -112,7 +117,8 @@ class CodeWords:
         code = self.source.codes.get(name)
         if code is not None and code.group == "cutter-comp":
             self.draft.refuse(word, what, put_before("cutter-comp"))
-        if code is not None and (code.act in FRAMING or self.saying.folds_value(code.act)):
+        folds = code is not None and (code.act in FRAMES or self.saying.folds_value(code.act))
+        if folds:
             self.draft.refuse(word, what, put_before("offsets"))
         if code is not None and code.effect is Effect.INERT:
             self.draft.refuse(word, what, f"{self.saying.dropping(name)} leaves it out")

@@ -228,9 +228,17 @@ def like(text: str, code: str) -> str:
 
 
 def other_in(
-    source: type[Dialect], target: type[Dialect], name: str, code: Code, meaning: Meaning
+    source: type[Dialect],
+    target: type[Dialect],
+    name: str,
+    code: Code,
+    meaning: Meaning,
+    asked: str = "",
 ) -> str:
-    """Return what the target cannot say, if a G code means something else there, or nothing."""
+    """Return what the target cannot say, if a G code means something else there, or nothing.
+
+    `asked` is the code of the block, where another one is said for it.
+    """
     other = target.codes.get(name)
     open_dwell = name == "G4" and code.effect is Effect.INERT  # a setting says what it counts
     if other is None or _what(other) != _what(code) or open_dwell:
@@ -238,7 +246,7 @@ def other_in(
     words = _words_of(meaning) if code.effect is Effect.FRAME else {*code.takes, *other.takes}
     if words & (set(code.takes) ^ set(other.takes)):
         return name
-    alone = not any(act.slots for act in meaning.acts if act.code == name)
+    alone = not any(act.slots for act in meaning.acts if act.code == (asked or name))
     stays = source.tool_rule.h_stays, target.tool_rule.h_stays
     if "H" in code.takes and alone and stays[0] != stays[1]:
         return f"{name} without H"

@@ -318,7 +318,9 @@ class Plan:
     @cached_property
     def saying(self) -> Saying:
         """How the target says what codes of the source do."""
-        return Saying(self.source, self.target, self.m_codes, self.drop)
+        folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
+        tips = self.source.tip_rule.codes if folds and self.source is not self.target else {}
+        return Saying(self.source, self.target, self.m_codes, self.drop, tips)
 
     @property
     def copies(self) -> bool:

@@ -220,9 +220,23 @@ MUTATIONS = (
     Mutation(
         "tips: words of a turned tip may be those of the machine",
         TIPS,
-        "if asked.reading.turns_plainly:",
+        "if asked.reading.turns_plainly and not asked.reading.crosses:",
         "if False:",
         tip("folded"),
+    ),
+    Mutation(
+        "tips: another control has the code that follows them",
+        "gcxform/pipeline/plan.py",
+        "self.source.tip_rule.codes if folds and self.source is not self.target else {}",
+        "{}",
+        "tests/test_corpus.py::test_case[dialects/across/followed-tip]",
+    ),
+    Mutation(
+        "tips: their words are those of another control, whatever folds them",
+        "gcxform/pipeline/plan.py",
+        "self.source.tip_rule.codes if folds and",
+        "self.source.tip_rule.codes if",
+        "tests/test_corpus.py::test_case[dialects/across/followed-tip-offered]",
     ),
     Mutation(
         "tips: X, Y and Z stand where they stood when one begins",

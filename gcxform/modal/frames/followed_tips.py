@@ -11,7 +11,8 @@ table "at that point of time" and calls the angle their "initial state" (30i, A-
 19696#5 = 1 leaves them out of the turn, p. 20): they may lie as with all rotary axes at 0, or along
 the axes of the machine. A CAM that states a point in a plane of G68.2 as well means the first. So
 the machine file has to say which, where G43.4 comes with the table turned. With `rtcp` the axes may
-turn; here they may not.
+turn; here they may not. For another control `offsets` makes words of the axes of these, and G43 is
+left of the code; for the same one it stays.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def follow(state: FrameState, asked: Asked) -> FrameState:
     if not turned or said == "machine":
         plain = TiltedPlane(None, vector_of(zero), named(chain, angles), tip=True)
         return replace(state, plane=plain)
-    if asked.reading.turns_plainly:
+    if asked.reading.turns_plainly and not asked.reading.crosses:
         message = f"{asked.code} with the table turned: it stays, and words would not"
         raise ActError("GX213", message, BY_RTCP)
     matrix = matrix_of(carried(chain, np.eye(3), angles))

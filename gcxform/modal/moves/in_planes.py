@@ -10,6 +10,7 @@ from collections.abc import Set
 
 import numpy as np
 
+from gcxform.dialect.code_translation import FOLLOW
 from gcxform.modal.frame_state import TiltedPlane
 from gcxform.modal.frames.followed_tips import BY_RTCP
 from gcxform.modal.frames.planes import EQUAL
@@ -20,7 +21,6 @@ from gcxform.modal.moves.rows import Stretches
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Ints
 
-FOLLOW = "follow-tip"
 WORDED = frozenset({CALL, *TAKES_MOTION} - OWN_MOVES | ORIENTING)
 """Acts whose block moves by no words of axes: it has none, or they are theirs."""
 BY_TABLES = {

@@ -24,8 +24,9 @@ class Offsets(gx.Pass):
     turned its coordinates are not written. What they would leave behind in the control is lost,
     and the certificate says of how many.
     Tool lengths, G28 and G53 stay as they are; but a length that is given by its value (G43.1) goes
-    into the words of a control that has no such code. How far two work offsets are apart has to be
-    known, from the machine file or from the program.
+    into the words of a control that has no such code, and a tip that is followed on a table that
+    stands (G43.4) into those of any other control: G43 is left. How far two work offsets are apart
+    has to be known, from the machine file or from the program.
     """
 
     name = "offsets"
