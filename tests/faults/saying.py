@@ -453,4 +453,18 @@ MUTATIONS = (
         "if False:",
         "tests/test_corpus.py::test_case[dialects/across/tool-in-the-spindle]",
     ),
+    Mutation(
+        "languages: a radius without a length is the edge's on a SINUMERIK",
+        "plugins/gcxform_plugins/dialects/siemens/lines.py",
+        'if sides and self.length in ("", NO_LENGTH):',
+        "if False:",
+        "tests/test_languages_offer.py::test_a_radius_without_a_length[siemens]",
+    ),
+    Mutation(
+        "languages: a radius without a length is the edge's on a Fagor",
+        "plugins/gcxform_plugins/dialects/fagor/lines.py",
+        'if self.length == "0" and not {"G41", "G42"}.isdisjoint(names):',
+        "if False:",
+        "tests/test_languages_offer.py::test_a_radius_without_a_length[fagor]",
+    ),
 )

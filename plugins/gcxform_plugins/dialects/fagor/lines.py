@@ -12,6 +12,7 @@ from decimal import Decimal
 
 import gcxform as gx
 from gcxform_plugins.dialects.fagor import tables
+from gcxform_plugins.dialects.shared.ways import NO_EDGE, OTHER_RADIUS
 
 CODES = {
     "G20": "G70",
@@ -77,6 +78,8 @@ class Lines(gx.Speller):
             return
         self.steps = "G91" in names or (self.steps and "G90" not in names)
         yield from self._tooled(names, values)
+        if self.length == "0" and not {"G41", "G42"}.isdisjoint(names):
+            raise gx.UnspeakableError(*NO_EDGE)
         if self.shifted and self.steps and "Z" in values:
             raise gx.UnspeakableError(STEPPED, gx.put_before("absolute"))
         self.shifted &= "Z" not in values
@@ -163,7 +166,7 @@ class Lines(gx.Speller):
         for letter, text in words:
             name = letter + _plain(text)
             if letter == "D" and _plain(text) != self.length:
-                raise gx.UnspeakableError("the radius of another tool than that of the length")
+                raise gx.UnspeakableError(*OTHER_RADIUS)
             if letter in "GM":
                 yield from self._code(name)
             elif letter in tables.PLAIN_WORDS or letter == "N":

@@ -11,12 +11,14 @@ from collections.abc import Iterable, Iterator
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain import unsaid
 from gcxform_plugins.dialects.heidenhain.drilling import Drilling, tapped
 from gcxform_plugins.dialects.heidenhain.fetching import called_with_speed, fetched_ahead, words_of
 from gcxform_plugins.dialects.heidenhain.helices import Point, centred, reached, turned
 from gcxform_plugins.dialects.heidenhain.kept_cycles import CallsKept
 from gcxform_plugins.dialects.heidenhain.numerals import bare, coded, signed, worded
 from gcxform_plugins.dialects.heidenhain.words import exact
+from gcxform_plugins.dialects.shared.ways import OTHER_RADIUS
 
 BEGIN_PGM = "BEGIN PGM "
 GOES_ON = "~ "
@@ -99,7 +101,9 @@ class Lines(CallsKept):
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
         if asides and IN_INCHES in words and not self.inch:
-            raise gx.UnspeakableError(f"{asides[0]}: in inches, as the program is no more", IN_MM)
+            raise gx.UnspeakableError(
+                f"{asides[0]}: in inches, as the program is no more", unsaid.IN_MM
+            )
         words = [each for each in words if not asides or each != IN_INCHES]
         codes = [coded(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
@@ -144,11 +148,11 @@ class Lines(CallsKept):
                 self.steps = code == "G91"
             elif code in ("G20", "G21"):
                 if (code == "G20") != self.inch:
-                    raise gx.UnspeakableError("a TNC has one unit in a program", ONE_UNIT)
+                    raise gx.UnspeakableError(*unsaid.ONE_UNIT)
             elif code == "G61":
-                raise gx.UnspeakableError("a TNC has no exact path", NO_EXACT_PATH)
+                raise gx.UnspeakableError(*unsaid.NO_EXACT_PATH)
             elif code[0] == "G" and code not in MODES and code not in ACTS:
-                raise gx.UnspeakableError(f"{code} has no words in Klartext")
+                raise unsaid.code_unsaid(code)
 
     def _tolerance(self, bound: str) -> Iterator[str]:
         """Yield cycle 32; without a tolerance the machine has one of its own, which is as near."""
@@ -242,7 +246,7 @@ class Lines(CallsKept):
         radius = bare(values.pop("D", self.in_spindle or "0")) if side else ""
         of_delta = not OF_DELTA.keys().isdisjoint(codes)
         if side not in ("", " R0") and radius != self.in_spindle and not of_delta:
-            raise gx.UnspeakableError("the radius of another tool than the one in the spindle")
+            raise gx.UnspeakableError(*OTHER_RADIUS)
         return side
 
     def _idle(self, ends: dict[str, Decimal]) -> str:
@@ -289,15 +293,15 @@ class Lines(CallsKept):
         if not {*PLANES[self.plane]} <= self.place.keys():
             raise gx.UnspeakableError("an arc from where it is not known")
         if self.waits != self.side:
-            raise gx.UnspeakableError("a contour begins and ends in lines, not in arcs")
+            raise gx.UnspeakableError(*unsaid.FROM_AN_ARC)
         if self.plane != "G17":
             if radius is not None or turns > 1:
-                raise gx.UnspeakableError("an arc by its radius, or of many turns, out of XY")
+                raise gx.UnspeakableError(*unsaid.ASIDE_ARC)
             yield from self._aside(ends, values, f"{sense}{feed}")
             return
         if radius is not None:
             if set(ends) - {"X", "Y"} or turns > 1:
-                raise gx.UnspeakableError("a helix by its radius has no words in Klartext")
+                raise gx.UnspeakableError(*unsaid.HELIX)
             yield f"CR{self._line(ends)} R{signed(Decimal(radius))}{sense}{feed}"
             return
         by = {axis: Decimal(values.pop(letter, "0")) for axis, letter in (("X", "I"), ("Y", "J"))}
@@ -343,13 +347,15 @@ class Lines(CallsKept):
     def _aside(self, ends: dict[str, Decimal], values: dict[str, str], rest: str) -> Iterator[str]:
         """Yield CC and C of an arc out of XY. Raises UnspeakableError."""
         axes = PLANES[self.plane]
-        if set(ends) - {*axes} or self.side != " R0":
-            raise gx.UnspeakableError("a helix or a contour out of XY has no words in Klartext")
+        if self.side != " R0":
+            raise gx.UnspeakableError(*unsaid.ASIDE_CONTOUR)
+        if set(ends) - {*axes}:
+            raise gx.UnspeakableError(*unsaid.ASIDE_HELIX)
         start = {axis: self.place[axis] for axis in axes}
         step = start if self.steps else dict.fromkeys(axes, Decimal(0))
         there = {a: ends[a] + step[a] if a in ends else start[a] for a in axes}
         if there == start and not self.rounded.keys().isdisjoint(axes):
-            raise gx.UnspeakableError("a whole turn from where a helix ends, out of XY")
+            raise gx.UnspeakableError(*unsaid.ASIDE_WHOLE)
         pole = {a: start[a] + Decimal(values.pop(CENTRES[a], "0")) for a in axes}
         self.place |= there
         for axis in axes:
@@ -364,7 +370,7 @@ class Lines(CallsKept):
     def _turned(self, ends: dict[str, Decimal], values: dict[str, str]) -> Iterator[str]:
         """Yield cycle 10, which turns about the zero. Raises UnspeakableError."""
         if any(ends.values()) or (ends and ends.keys() != {"X", "Y"}):
-            raise gx.UnspeakableError("G68 about another point has no words in Klartext", UNTURNED)
+            raise gx.UnspeakableError(*unsaid.TURNED)
         angle = Decimal(values.pop("R", "0"))
         if angle or self.turns:
             yield "CYCL DEF 10.0 ROTATION"
@@ -375,7 +381,7 @@ class Lines(CallsKept):
     def _shifted(self, ends: dict[str, Decimal]) -> Iterator[str]:
         """Yield cycle 7, which is read as a shift of three axes, or as none where they stay."""
         if {*ends} != {*LINEAR} or ends == self.shift:
-            raise gx.UnspeakableError("G52 of fewer axes, or that changes nothing", UNTURNED)
+            raise gx.UnspeakableError(*unsaid.SHIFTED)
         for axis in ends.keys() & self.place.keys():
             self.place[axis] += self.shift[axis] - ends[axis]
         self.shift = ends
@@ -388,10 +394,4 @@ class Lines(CallsKept):
             self.place.pop(axis, None)
 
 
-UNTURNED = gx.put_before("offsets")
-
-
-IN_MM = "leave `metric` out: a TNC takes programs in inches"
-ONE_UNIT = gx.put_before("metric")
-NO_EXACT_PATH = 'drop = ["G61"] in [output] leaves it out'
 ACTS = frozenset(("G4", "G43", "G43.1", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.shared.ways import NO_EDGE, OTHER_RADIUS, UNSHIFTED
 from gcxform_plugins.dialects.siemens.asides import AROUND
 from gcxform_plugins.dialects.siemens.cycles import HOLE
 from gcxform_plugins.dialects.siemens.cycles import PATH as KEPT_PATH
@@ -214,7 +215,10 @@ class Lines(gx.Speller):
             self.length = NO_LENGTH
         if self.shifted and self.steps and "Z" in values:
             raise gx.UnspeakableError(STEPPED, gx.put_before("absolute"))
-        counts = "Z" in values or not {"G41", "G42"}.isdisjoint(names)
+        sides = not {"G41", "G42"}.isdisjoint(names)
+        if sides and self.length in ("", NO_LENGTH):
+            raise gx.UnspeakableError(*NO_EDGE)
+        counts = "Z" in values or sides
         if (self.waits and counts) or not {"G43", "G49"}.isdisjoint(names):
             yield self._edge
 
@@ -245,7 +249,7 @@ class Lines(gx.Speller):
             elif letter == "P" and text.isdigit() and int(text) > 1:
                 yield f"TURN={int(text) - 1}"
             elif letter == "D" and text_of(Decimal(text)) != self.length:
-                raise gx.UnspeakableError("the radius of another tool than that of the length")
+                raise gx.UnspeakableError(*OTHER_RADIUS)
             elif letter not in "DGHMOPT":
                 raise gx.UnspeakableError(f"{letter} has no words on a SINUMERIK")
 
@@ -271,6 +275,6 @@ def _of_list(words: list[tuple[str, str]]) -> list[tuple[str, str]]:
         return words
     name = f"G54.1 P{dict(words).get('P', '')}"
     if name not in OFFSETS:
-        raise gx.UnspeakableError(f"{name} has no words on a SINUMERIK")
+        raise gx.UnspeakableError(f"{name} has no words on a SINUMERIK", UNSHIFTED)
     said = [("G", OFFSETS[name][1:]) if each == ("G", "54.1") else each for each in words]
     return [each for each in said if each[0] != "P"]
