@@ -82,6 +82,8 @@ from gcxform.flow.items import Item as Item
 from gcxform.flow.speller import Speller as Speller
 from gcxform.flow.speller import UnspeakableError as UnspeakableError
 from gcxform.flow.split_numbers import NUMBER as NUMBER
+from gcxform.flow.split_numbers import NUMBER_OF_WORD as NUMBER_OF_WORD
+from gcxform.flow.split_numbers import NUMBER_OR_COMMA as NUMBER_OR_COMMA
 from gcxform.flow.stretch import Ahead as Ahead
 from gcxform.flow.stretch import Computed as Computed
 from gcxform.flow.tool_names import ToolNames as ToolNames

@@ -21,7 +21,7 @@ from gcxform.dialect.dialect import Dialect
 from gcxform.flow.items import Item, Part, part_of
 from gcxform.flow.learned import CODE, DIGITS
 from gcxform.flow.speller import ASIDE, HIDDEN
-from gcxform.flow.split_numbers import NUMBER, split_at_numbers
+from gcxform.flow.split_numbers import split_at_numbers
 from gcxform.flow.stretch import Ahead, Slots
 from gcxform.flow.tree_shapes import SLOT, TreeShapes
 from gcxform.syntax import grammar_cache as kept
@@ -72,8 +72,8 @@ class LineShapes(ABC):
     """Package and name of the grammar of a line."""
     number: ClassVar[re.Pattern[str]]
     """What the grammar's terminal NUMBER looks like, without groups and within a line; with a look
-    behind it need not match the number of a code, which is then part of a name: `G54`. With the
-    NUMBER of `split_numbers.py` lines are split faster."""
+    behind it need not match the number of a code, which is then part of a name: `G54`. With a
+    pattern of `split_numbers.py` lines are split faster."""
 
     def __init__(self, lines: list[str], file: str, dialect: type[Dialect]) -> None:
         self.lines = lines
@@ -85,7 +85,6 @@ class LineShapes(ABC):
         """Lines, from 0, of other programs in the file: they stay where this one is written anew,
         in its language."""
         self._lark = _grammar(*self.grammar)
-        self._split = re.compile(f"({self.number.pattern})", self.number.flags).split
         self._shapes: dict[str, Shape] = {}
         self._partly: dict[tuple[str, ...], Shape] = {}
         self._fixed: dict[str, tuple[int, ...]] = {}
@@ -175,10 +174,7 @@ class LineShapes(ABC):
 
     def _divided(self, text: str) -> tuple[str, list[str]]:
         """Return a text without its numbers, and with them."""
-        if self.number is NUMBER:
-            return split_at_numbers(text, SLOT)
-        pieces = self._split(text)
-        return SLOT.join(pieces[::2]), pieces[1::2]
+        return split_at_numbers(text, SLOT, self.number)
 
     def _new_shape(
         self, line: int, text: str, key: str, found: list[str]

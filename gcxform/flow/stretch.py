@@ -8,7 +8,8 @@ variables are worth by then: no other line reads or sets these.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from itertools import accumulate, groupby
+from itertools import accumulate
+from operator import itemgetter
 from typing import Any, NamedTuple, Protocol, Self
 
 from gcxform.values import dataclass
@@ -66,25 +67,21 @@ class Computed(NamedTuple):
 class Ahead(NamedTuple):
     """Lines that were split at once, from `first` on: `keys` are they without their numbers.
 
-    The numbers of each begin at `starts`; the lines of its key in a row end before `ends`.
+    The numbers of each begin at `starts`.
     """
 
     first: int
     keys: Sequence[str]
     numbers: Numbers
     starts: Sequence[int]
-    ends: Sequence[int]
 
     @classmethod
     def of(cls, first: int, text: str, numbers: Numbers, slot: str) -> Self:
         """Return lines for their text, in which `slot` stands for each of their numbers."""
         keys = text.split("\n")
-        starts = [*accumulate([key.count(slot) for key in keys], initial=0)]
-        ends: list[int] = []
-        for _, same in groupby(keys):
-            count = len([*same])
-            ends += [len(ends) + count] * count
-        return cls(first, keys, numbers, starts, ends)
+        count = {key: key.count(slot) for key in {*keys}}
+        starts = [*accumulate([count[key] for key in keys], initial=0)]
+        return cls(first, keys, numbers, starts)
 
     def numbers_of(self, k: int) -> Numbers:
         """Return the numbers of a line, of which `k` are before it."""
@@ -92,7 +89,10 @@ class Ahead(NamedTuple):
 
     def alike(self, k: int, stop: int, slots: Slots) -> int:
         """Return where lines end that have the key and codes of line `k`, and digits where due."""
-        stop = min(self.ends[k], stop)
+        key, keys, end = self.keys[k], self.keys, k + 1
+        while end < stop and keys[end] == key:
+            end += 1
+        stop = end
         at, width = self.starts[k], self.starts[k + 1] - self.starts[k]
         for slot in slots.codes:
             codes = self.numbers[at + slot : self.starts[stop] : width]
@@ -110,41 +110,44 @@ class Stretch:
 
     node   the state behind them
     texts  templates of their blocks, to be filled in with the numbers that are `given`
-    steps  what lines have done, each with the place in `given` of the last that did it in a row
+    steps  what lines have done, each with the place in `given` of the last that did it
     """
 
     def __init__(self, ahead: Ahead, node: Any, shapes: Mapping[str, Known]) -> None:
         self.ahead, self.node, self.shapes = ahead, node, shapes
         self.texts: list[str] = []
         self.given: list[str] = []
-        self.steps: list[tuple[Stepped, int]] = []
+        self.steps: dict[Stepped, int] = {}
 
     def take(self, lines: range, computed: Callable[[Ahead, int], Computed | None]) -> None:
-        """Take lines of those that were split, up to the first that is not known."""
-        k, keys, shapes = lines.start, self.ahead.keys, self.shapes
-        while k < lines.stop:
-            shape = shapes.get(keys[k])
-            if shape is not None and shape.steady:
-                behind = self._plain(shape, k, lines.stop)
-            else:
-                behind = k + self._takes(computed(self.ahead, k))
-            if behind == k:
-                return
-            k = behind
+        """Take lines of those that were split, up to the first that is not known.
 
-    def _plain(self, shape: Known, k: int, stop: int) -> int:
-        """Take lines that do the same; return where they end."""
-        ahead, slots = self.ahead, shape.slots
-        starts, at = ahead.starts, ahead.starts[k]
-        step = self._step(shape, slots, ahead.numbers, at)
-        if step is None or slots is None:
-            return k
-        behind = ahead.alike(k, stop, slots) if step.behind is self.node else k + 1
-        self.steps.append((step, len(self.given) + starts[behind - 1] - at))
-        self.texts += [step.in_order] * (behind - k)
-        self.given += ahead.numbers[at : starts[behind]]
-        self.node = step.behind
-        return behind
+        It is gone through for each line of a program, so it calls as little as it can.
+        """
+        ahead, shapes, node = self.ahead, self.shapes, self.node
+        keys, numbers, starts = ahead.keys, ahead.numbers, ahead.starts
+        texts, given, steps = self.texts, self.given, self.steps
+        k, stop = lines.start, lines.stop
+        while k < stop:
+            shape = shapes.get(keys[k])
+            slots = shape.slots if shape is not None and shape.steady else None
+            if slots is None:
+                self.node = node
+                if not self._takes(computed(ahead, k)):
+                    return
+                node, k = self.node, k + 1
+                continue
+            at, behind = starts[k], k + 1
+            step = node.steps.get(slots.name(shape, numbers, at) if slots.codes else shape)
+            if not step or not step.in_order or (slots.digits and not slots.fit(numbers, at)):
+                break
+            if step.behind is node and behind < stop and keys[behind] == keys[k]:
+                behind = ahead.alike(k, stop, slots)
+            steps[step] = len(given) + starts[behind - 1] - at
+            texts += [step.in_order] * (behind - k)
+            given += numbers[at : starts[behind]]
+            node, k = step.behind, behind
+        self.node = node
 
     def _takes(self, line: Computed | None) -> bool:
         """Take a line that computes; return whether it could be taken."""
@@ -156,7 +159,7 @@ class Stretch:
             step = self._step(line.shape, line.shape.slots, line.numbers, 0)
             if step is None:
                 return False
-            self.steps.append((step, len(self.given)))
+            self.steps[step] = len(self.given)
             self.texts.append(step.in_order)
             self.given += line.numbers
             self.node = step.behind
@@ -176,11 +179,5 @@ class Stretch:
 
     def told(self) -> dict[str, str]:
         """Return where axes are told to be behind the lines: what the last of each says."""
-        ends: dict[str, str] = {}
-        axes = {axis for step in {step for step, _ in self.steps} for axis, _ in step.ends}
-        for step, at in reversed(self.steps):
-            if not axes:
-                break
-            ends |= {axis: self.given[at + slot] for axis, slot in step.ends if axis in axes}
-            axes -= ends.keys()
-        return ends
+        in_order = sorted(self.steps.items(), key=itemgetter(1))
+        return {axis: self.given[at + slot] for step, at in in_order for axis, slot in step.ends}

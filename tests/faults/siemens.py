@@ -729,10 +729,10 @@ MUTATIONS = (
         LEARNT,
     ),
     Mutation(
-        "learned: of a long run of lines the last alone says where axes are",
+        "learned: of a run of lines what was done first but not last says where axes are",
         STRETCH,
-        "            axes -= ends.keys()\n",
-        "            break\n",
+        "sorted(self.steps.items(), key=itemgetter(1))",
+        "[*self.steps.items()]",
         LEARNT,
     ),
     Mutation(
@@ -970,22 +970,36 @@ MUTATIONS = (
     Mutation(
         "learned: the first of lines of one shape in a row says where axes are",
         STRETCH,
-        "len(self.given) + starts[behind - 1] - at",
-        "len(self.given)",
+        "len(given) + starts[behind - 1] - at",
+        "len(given)",
         LEARNT,
     ),
     Mutation(
         "lines: two signs before a number are one",
         "gcxform/flow/split_numbers.py",
-        'TWICE = (".0.", "..", "++", "+-", "-+", "--")',
-        'TWICE = (".0.", "..", "++", "+-", "--")',
+        "    inner = np.count_nonzero(kind == SIGN) > np.count_nonzero(signed)\n",
+        "    inner = False\n",
         f"{LEARNT}::test_texts_are_split_as_an_expression_does",
     ),
     Mutation(
         "lines: a number with two points is one",
         "gcxform/flow/split_numbers.py",
-        'TWICE = (".0.", "..",',
-        'TWICE = ("..",',
+        "(pointed[1:] == pointed[:-1]).any()",
+        "False",
+        f"{LEARNT}::test_texts_are_split_as_an_expression_does",
+    ),
+    Mutation(
+        "lines: a number behind a code and a sign is that of the code",
+        "gcxform/flow/split_numbers.py",
+        " or (signed & of_code).any()",
+        "",
+        f"{LEARNT}::test_texts_are_split_as_an_expression_does",
+    ),
+    Mutation(
+        "lines: a point alone is a number",
+        "gcxform/flow/split_numbers.py",
+        "    digits[pointed] -= 1\n",
+        "",
         f"{LEARNT}::test_texts_are_split_as_an_expression_does",
     ),
     Mutation(
@@ -998,8 +1012,8 @@ MUTATIONS = (
     Mutation(
         "siemens: lines of one key and other forms are compiled as one",
         "plugins/gcxform_plugins/dialects/siemens/computing.py",
-        'form = ahead.keys[k], DIGITS.sub("0", " ".join(numbers))',
-        'form = ahead.keys[k], ""',
+        'form = ahead.keys[k], " ".join(numbers).encode().translate(ZEROS)',
+        'form = ahead.keys[k], b""',
         f"{LEARNT}::test_programs_are_translated_alike",
     ),
     Mutation(

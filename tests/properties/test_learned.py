@@ -11,8 +11,7 @@ import pytest
 from seeds_kit import LONG, shares
 
 import gcxform as gx
-from gcxform.flow import translation
-from gcxform.flow.split_numbers import NUMBER, split_at_numbers
+from gcxform.flow import split_numbers, translation
 from gcxform.flow.translated import Translated, translated_so_far
 from gcxform.machine.machine import Tool
 from gcxform.modal.state import Reading
@@ -185,14 +184,18 @@ def test_a_compiled_line_does_its_assignments_in_turn() -> None:
 
 
 @shares(1_000_000 if LONG else 4_000, 1_000_000 if LONG else 4_000)
-def test_texts_are_split_as_an_expression_does(seeds: range) -> None:
-    pieces = (*"0019.+-", "XY", " ", "=", "\n", "R", "\t", "\xe9", "10.", "-.5", "1.25", "0" * 17)
-    plain = re.compile(f"({NUMBER.pattern})")
+def test_texts_are_split_as_an_expression_does(
+    seeds: range, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(split_numbers, "SHORT", 0)
+    pieces = (*"0019.,+-GmX \n\t\xe9", "XY", "=", "R", "10.", "-.5", "1.25", "1,5", "G1X", "0" * 17)
     for seed in seeds:
         pick = random.Random(seed)
         text = "".join(pick.choices(pieces, k=pick.randint(0, 14)))
-        found = plain.split(text)
-        assert split_at_numbers(text, "#") == ("#".join(found[::2]), found[1::2]), text
+        for number in split_numbers.CLASSES:
+            found = re.compile(f"({number.pattern})").split(text)
+            split = split_numbers.split_at_numbers(text, "#", number)
+            assert split == ("#".join(found[::2]), found[1::2]), (text, number)
 
 
 class Hidden(default_registry().dialect("siemens").translator):  # type: ignore[misc]

@@ -32,7 +32,7 @@ class Blocks(gx.Translator):
     """
 
     grammar = ("gcxform_grammars", "fagor")
-    number = re.compile(r"(?<![GMgm0-9.])[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)")
+    number = gx.NUMBER_OF_WORD
     signs = re.compile(
         rb"(?im)^[^(;\n]*(?:#(?:RTCP|TLC|CS|ACS|MCS|KIN|HSC|P?CALL|MCALL|RET)\b"
         rb"|\$(?:IF|FOR|WHILE|GOTO|SWITCH)\b|[XYZ]-?[0-9.]+I(?![-+.0-9 \t=\[]))"

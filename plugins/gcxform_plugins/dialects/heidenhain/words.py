@@ -75,7 +75,7 @@ class Words(gx.Translator):
     """
 
     grammar = ("gcxform_grammars", "heidenhain")
-    number = re.compile(r"[+-]?(?:[0-9]+(?:[.,][0-9]*)?|[.,][0-9]+)")
+    number = gx.NUMBER_OR_COMMA
     signs = re.compile(rb"\bBEGIN[ \t]+PGM\b", re.IGNORECASE)
 
     def __init__(self, *program: Any) -> None:

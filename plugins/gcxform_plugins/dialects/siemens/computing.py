@@ -28,7 +28,7 @@ COMPILED = frozenset(("word", "value", "named", "indexed", "expression"))
 COMPUTED = frozenset(("expression", "flow", "system", "array"))
 SLASH = re.compile(r"\A[ \t]*/[0-9]?")
 MESSAGE = re.compile(r"MSG[ \t]*\(", re.IGNORECASE)
-DIGITS = re.compile("[0-9]+")
+ZEROS = bytes.maketrans(b"123456789", b"000000000")
 CYCLES = re.compile(
     r"CYCLE[678][0-9]+|HOLES[12]|POCKET[1-4]|SLOT[12]|LONGHOLE|WORKPIECE", re.IGNORECASE
 )
@@ -54,7 +54,7 @@ class Computing(Deciding):
         self.standing: list[tuple[int, str]] = []
         self.unsaid: set[str] = set()
         self.unknown_cycle = ""
-        self._keys: dict[tuple[str, str], str] = {}
+        self._keys: dict[tuple[str, bytes], str] = {}
         self._compiled: dict[Hashable, InPlainWords | None] = {}
         self._compiler = Compiler(self.worth, self.given)
         self.fed, self.feed_mode = True, "94"
@@ -74,7 +74,7 @@ class Computing(Deciding):
     def plain_words(self, ahead: gx.Ahead, k: int) -> gx.Computed | None:
         """Return a line in plain words, which may set R parameters; None for other lines."""
         numbers, grammar = ahead.numbers_of(k), self.grammar_of_expressions
-        form = ahead.keys[k], DIGITS.sub("0", " ".join(numbers))
+        form = ahead.keys[k], " ".join(numbers).encode().translate(ZEROS)
         key = self._keys.get(form)
         if key is None and (key := self._new_key(form, ahead.first + k)) is None:
             return None
@@ -90,7 +90,7 @@ class Computing(Deciding):
         except (v.NoValueError, OverflowError):
             return None
 
-    def _new_key(self, form: tuple[str, str], line: int) -> str | None:
+    def _new_key(self, form: tuple[str, bytes], line: int) -> str | None:
         """Return the key of a line by the grammar of expressions, and keep it."""
         if len(self._keys) >= MOST:
             self._keys.clear()

@@ -38,9 +38,9 @@ def lost(what: str) -> v.NoValueError:
 def number_text(value: float) -> str:
     """Return a number as it is written in a word."""
     text = repr(value)
-    if "e" not in text and text[-2:] == ".0":  # what most are, at half the time
-        return text[:-2] if text != "-0.0" else "0"
-    return text_of(Decimal(text))
+    if "e" in text:
+        return text_of(Decimal(text))
+    return text.removesuffix(".0") if text != "-0.0" else "0"
 
 
 class Expressions(v.Evaluator):
