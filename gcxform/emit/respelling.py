@@ -39,10 +39,10 @@ IN_LINES = frozenset(("NO_CYCLES", "WORKPIECE_FRAME"))
 def counting_lines(translator: Translator) -> frozenset[int]:
     """Return the lines, from 0, with words that count from where an axis stands."""
     lines, counted = translator.lines, frozenset(translator.counted)
-    if translator.stepped is None:
+    if not translator.stepped:
         return counted | {k for k, line in enumerate(lines) if translator.counts(line)}
     text = translator.uncommented("\n".join(lines))
-    places = [match.end() for match in translator.stepped.finditer(text)]
+    places = [match.end() for each in translator.stepped for match in each.finditer(text)]
     if not places:
         return counted
     ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
@@ -101,13 +101,13 @@ def refuse_kept(source: Translated, facts: Collection[Fact]) -> None:
 
     Raises SpellingError.
     """
-    translator, said = source.translator, source.text.splitlines()
+    translator = source.translator
     against = [f.name for f in facts if f.name in WHY and f.name in translator.against]
     if not against:
         return
     kept = [
         line
-        for line, block in zip(source.origin.tolist(), said, strict=True)
+        for line, block in zip(source.origin.tolist(), source.text.splitlines(), strict=True)
         if _is_kept(translator.kept, [block])
     ]
     executed = {*source.executed_lines()[1:].tolist()} if IN_LINES & {*against} else ()

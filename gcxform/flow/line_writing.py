@@ -25,8 +25,9 @@ class LineWriting(LineShapes):
     """Whether programs in this language can be written as such again: see `spelled`."""
     speller: ClassVar[type[Speller] | None] = None
     """What writes programs for another control in this language; None: they are only read."""
-    stepped: ClassVar[re.Pattern[str] | None] = None
-    """What stands in each line that `counts`; without it all are asked."""
+    stepped: ClassVar[tuple[re.Pattern[str], ...]] = ()
+    """Of these one stands in each line that `counts`; without any all are asked. They are found
+    fastest if each begins with a text."""
     against: ClassVar[Mapping[str, re.Pattern[str]]] = {}
     """What a line has that puts lengths in inches in force, by the fact METRIC, whose pass then
     cannot do what it is for; arcs by LINEAR_ONLY and XY_ARCS; cycles by NO_CYCLES and what shifts

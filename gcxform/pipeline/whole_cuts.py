@@ -18,6 +18,8 @@ MOTION = re.compile(rb"[Gg][ \t]*0*([0123])(?![0-9.])")
 LENGTH = re.compile(rb"[Gg][ \t]*0*4([39])(?:\.0*)?(?![0-9.])")
 KNOTS = re.compile(rb"[Gg][ \t]*0*5[ \t]*\.[ \t]*([23])0*(?![0-9])")
 CYCLES = re.compile(rb"[Gg][ \t]*(?:(7[346]|8[1-9])|80)(?![0-9.])")
+BEGUN = tuple(g + more for g in (b"G", b"g") for more in (b"7", b"8", b" ", b"\t"))
+"""What each of them begins with, which is found sooner."""
 PART = 1 << 17  # bytes
 COMMENT = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*")
 
@@ -53,6 +55,8 @@ def _in_parts(texts: Iterator[bytes]) -> Iterator[bytes]:
 def _drilled(text: bytes, drills: bool) -> tuple[int, bool]:
     """Return about how many bytes of a text are lines of cycles, and whether one is in force."""
     found = at = 0
+    if not any(begun in text for begun in BEGUN):
+        return len(text) * drills, drills
     for code in CYCLES.finditer(text):
         found += (code.start() - at) * drills
         at, drills = code.start(), code[1] is not None

@@ -76,7 +76,7 @@ class WrittenBack:
             written = [line for part in self.parts for line in part.text.splitlines()]
             check_kept(self.source, written, self.plan.target)
             text = respelled(given, self.source, blocks, counting)
-        return Folded(text, tuple(range(len(text.splitlines()))), (), ())
+        return Folded(text, tuple(range(lines_in(text) if text else 0)), (), ())
 
     def sealed(self, text: bytes) -> bytes:
         """Return a proved program with its seal: its stamps stay where they stand."""

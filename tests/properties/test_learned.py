@@ -131,6 +131,8 @@ def test_programs_are_translated_alike(seeds: range) -> None:
             "X30 Y8",
         ),
         ((*(f"X{k} Y{k}" for k in range(5, 30)), "X=IC(1) Y3"), "X30 Y3"),
+        ((*("X2", "X1 Y2") * 8, "X4 Y7", "X9", "X=IC(1) Y3"), "X10 Y3"),
+        ((*("X1 Y2", "X2") * 8, "X1 Y2", "X4 Y7", "X9", "X=IC(1) Y3"), "X10 Y3"),
         ((*("G700", "X1 Y1", "G700", "X3") * 9, "G3 X7 CR=2"), "G3 M9000"),
         ((*("G700", "X3", "G700", "X1 Y1") * 9, "G3 X7 Y1 CR=7"), "G3 X7"),
         (("G3 X=3 Y=1 CR=2", "G1 X4", "G3 X=6 Y=1 CR=2", "G1 X=R9", "G3 X=7 Y=1 CR=2"), "G3 M9000"),

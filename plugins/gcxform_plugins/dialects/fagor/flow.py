@@ -27,6 +27,7 @@ from gcxform_plugins.dialects.fagor.structure import (
     code,
     sections,
 )
+from gcxform_plugins.dialects.fagor.tables import AXES
 
 HALVES = frozenset((*OPENS, *INNER, *ENDS))
 DEEPEST = 20  # calls inside of each other
@@ -72,7 +73,8 @@ class Flow(Computing):
         self.local, self.at, self.wrong = self._sections()
         self.begin = self.at
         self._text = code("\n".join(self.lines))
-        self.letters = frozenset(self._text.upper())
+        capitals = self._text.upper()
+        self.letters = frozenset(each for each in FLOW_LETTERS | AXES if each in capitals)
         may = not self.letters.isdisjoint(FLOW_LETTERS)
         self.decides = bool(self.local) or (may and FLOWS.search(self._text) is not None)
         self.plainly = not self.decides

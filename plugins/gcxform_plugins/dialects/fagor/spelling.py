@@ -30,8 +30,8 @@ COUNTS = re.compile(
     rf"(?<![A-Z0-9_.])[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}|{STEPS.pattern}", re.IGNORECASE
 )
 """Words that count from where their axis stands, or G91."""
-STEPPED = re.compile(r"[IiGg](?:(?<=[0-9.\]][Ii])|(?<=[Gg])[ \t]*0*91)")
-"""What each of them has: letters that may be looked for one by one."""
+STEPPED = tuple(map(re.compile, (r"91(?![0-9.])", r"I(?<=[0-9.\]]I)", r"i(?<=[0-9.\]]i)")))
+"""Of these each of them has one, which is found sooner."""
 
 
 def spelled(line: str, blocks: Sequence[str]) -> str | None:

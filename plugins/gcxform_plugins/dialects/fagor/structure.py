@@ -37,7 +37,7 @@ class StructureError(Exception):
 
 def code(text: str) -> str:
     """Return lines without their comments."""
-    return COMMENT.sub("", text)
+    return COMMENT.sub("", text) if "(" in text or ";" in text else text
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +115,8 @@ def sections(lines: Sequence[str]) -> tuple[dict[str, range], int]:
 
     Subroutines stand before the program (8070, Ref. 1709, p. 32); without any it begins at 0.
     """
+    if "%" not in "\n".join(lines):
+        return {}, 0
     heads = [(k, m) for k, text in enumerate(lines) if "%" in text and (m := HEADER.match(text))]
     if not heads or any(code(lines[k]).strip() for k in range(heads[0][0])):
         return {}, 0

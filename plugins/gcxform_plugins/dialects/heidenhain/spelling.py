@@ -30,8 +30,10 @@ STEPPED = re.compile(
     re.IGNORECASE,
 )
 """Words that count from where an axis stands. IPA of CP is no such word: it may be many turns."""
-STEPPED_AT = re.compile(r"[Ii](?:[XYZABCUVWxyzabcuvw][ \t]*[-+.,0-9Qq]|[Pp][ARar])")
-"""What each of them has, which is found sooner."""
+STEPPED_AT = tuple(
+    re.compile(rf"{letter}(?:[XYZABCUVWxyzabcuvw][ \t]*[-+.,0-9Qq]|[Pp][ARar])") for letter in "Ii"
+)
+"""Of these each of them has one, which is found sooner."""
 
 
 def code(text: str) -> str:

@@ -135,6 +135,8 @@ class Units(Calls):
 
 def units_of(lines: Sequence[str]) -> Iterator[tuple[str, str, range]]:
     """Yield the programs of a file: name and kind in capitals, and lines."""
+    if "%" not in "\n".join(lines):
+        return
     found = [(at, HEADER.fullmatch(line)) for at, line in enumerate(lines) if "%" in line]
     heads = [(at, head) for at, head in found if head is not None]
     starts = [*(at for at, _ in heads), len(lines)]
