@@ -22,8 +22,10 @@ def test_a_text_that_drills_is_divided() -> None:
     assert b"".join(found).decode() == HEAD + HOLES + LINES
     assert max(map(len, found[:-1])) <= PART
     assert found[-1].decode() == LINES
-    begun = parts(HOLES.removesuffix("G80\n"), HOLES[16:])  # a cycle goes on into the next text
-    assert max(map(len, begun)) <= PART
+    holes = HOLES.removesuffix("G80\n")
+    for text in (holes, holes.lower()):  # a cycle goes on into the next texts
+        begun = parts(text, text[16:], text[16:] + "G80\n")
+        assert max(map(len, begun)) <= PART
 
 
 FEW = LINES + HOLES[:9000] + "G80\n" + LINES

@@ -85,10 +85,13 @@ class Window:
 def scan(text: bytes, first_line: int, table: ShapeTable) -> Window:
     """Return the columns of whole lines; new shapes are parsed and enter the table."""
     raw = np.frombuffer(text, np.uint8)
-    kind = np.frombuffer(text.translate(CLASS), np.uint8)
+    kinds = text.translate(CLASS)
+    kind = np.frombuffer(kinds, np.uint8)
     start, end, following = _lines(raw, text)
-    odd = _with_others(kind, start)
-    if odd.any():  # nothing of them is looked for here
+    odd = np.zeros(len(start), np.bool_)
+    if OTHER in kinds:
+        odd = np.logical_or.reduceat(kind == OTHER, start)
+        # nothing of these lines is looked for here
         kind = np.where(np.repeat(odd, following - start), np.uint8(END), kind)
     runs = _runs(text, raw, kind)
     own = _lines_by_themselves(odd, runs, following)
@@ -116,13 +119,6 @@ def _lines(raw: Bytes, text: bytes) -> tuple[Ints, Ints, Ints]:
     return np.append(0, following[:-1]), following - width, following
 
 
-def _with_others(kind: Bytes, start: Ints) -> Flags:
-    """Return which lines have more than letters, numbers and blanks."""
-    if not len(kind):
-        return np.zeros(len(start), np.bool_)
-    return np.logical_or.reduceat(kind == OTHER, start)
-
-
 @dataclass(slots=True)
 class _Runs:
     """Runs of number characters: first and past-the-last offset, and what they hold."""
@@ -148,7 +144,7 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     before = kind[start - 1]
     before[start == 0] = OTHER
     first = start + (kind[start] == SIGN)
-    point, plain = _points(kind, numeric, first, start, end)
+    point, plain = _points(kind, numeric, start)
     split = np.where(point >= 0, point, end)
     decimals = np.where(point >= 0, end - point - 1, -1)
     fraction = np.maximum(decimals, 0)
@@ -162,15 +158,14 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain)
 
 
-def _points(kind: Bytes, numeric: Flags, first: Ints, start: Ints, end: Ints) -> tuple[Ints, Flags]:
+def _points(kind: Bytes, numeric: Flags, start: Ints) -> tuple[Ints, Flags]:
     """Return the offset of each run's point (-1: none), and whether points and signs are right."""
-    is_point = kind == POINT
-    before = np.zeros(len(kind) + 1, np.int32)
-    np.cumsum(is_point, dtype=np.int32, out=before[1:])
-    count = before[end] - before[first]
-    points = np.append(np.flatnonzero(is_point), len(kind))
-    point = np.where(count > 0, points[before[first]], -1)
-    good = count <= 1
+    points = np.flatnonzero(kind == POINT)
+    owner = np.searchsorted(start, points, side="right") - 1
+    point = np.full(len(start), -1)
+    point[owner] = points
+    good = np.ones(len(start), np.bool_)
+    good[owner[1:][owner[1:] == owner[:-1]]] = False
     signs = np.flatnonzero(kind == SIGN)
     inner = signs[(signs > 0) & numeric[signs - 1]]
     good[np.searchsorted(start, inner, side="right") - 1] = False

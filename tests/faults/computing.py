@@ -241,6 +241,13 @@ MUTATIONS = (
         "tests/properties/test_reading.py",
     ),
     Mutation(
+        "shapes: a number with two points is one",
+        "gcxform/syntax/scan.py",
+        "owner[1:][owner[1:] == owner[:-1]]",
+        "owner[:0]",
+        "tests/properties/test_reading.py::test_outlines_say_what_the_grammar_says",
+    ),
+    Mutation(
         "outlines: a line that has none has the last shape there is",
         "gcxform/syntax/scan.py",
         "np.where(outlined >= 0, outlined, shape[found.lines])",

@@ -266,6 +266,20 @@ MUTATIONS = (
         "tests/test_whole_cuts.py",
     ),
     Mutation(
+        "windows: a cycle ends before a text without codes",
+        "gcxform/pipeline/whole_cuts.py",
+        "        return len(text) * drills, drills\n",
+        "        return 0, drills\n",
+        "tests/test_whole_cuts.py",
+    ),
+    Mutation(
+        "windows: codes in small letters drill nothing",
+        "gcxform/pipeline/whole_cuts.py",
+        ', re.compile(rb"g[78 \\t]")',
+        ",",
+        "tests/test_whole_cuts.py",
+    ),
+    Mutation(
         "windows: one hole makes all of them small",
         "gcxform/pipeline/whole_cuts.py",
         "2 * drilled > len(text)",

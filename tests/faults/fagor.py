@@ -45,8 +45,8 @@ MUTATIONS = (
     Mutation(
         "fagor: a value in brackets does not count from where an axis stands",
         "plugins/gcxform_plugins/dialects/fagor/spelling.py",
-        "[IiGg](?:(?<=[0-9.\\]][Ii])",
-        "[IiGg](?:(?<=[0-9.][Ii])",
+        'r"I(?<=[0-9.\\]]I)"',
+        'r"I(?<=[0-9.]I)"',
         f"{CASE}steps-in-brackets]",
     ),
     Mutation(

@@ -209,6 +209,7 @@ COMPUTING = (
 @in_every_dialect
 @given(lines=st.lists(st.lists(st.sampled_from(COMPUTING), max_size=5), min_size=1, max_size=8))
 @example([["X[#1+2.5]", "(wall 3)"], ["X[#1+12.]", "(w)"], [";tail 5"], ["(wall 3)"]])
+@example([["X1.5"], ["X1.2.3"]])
 @pytest.mark.parametrize("gap", ["", " "])
 def test_outlines_say_what_the_grammar_says(name: str, gap: str, lines: list[list[str]]) -> None:
     check_program("\n".join(gap.join(line) for line in lines).encode("latin-1"), name)
