@@ -179,9 +179,9 @@ CODES: dict[str, tuple[str, str]] = {
     "GX233": (
         "A contour under cutter compensation would be moved",
         "In G41 and G42 the blocks are a contour, which the control offsets by the tool's radius. "
-        "Points of it that are moved for another reason would be offset as well, and the moves "
-        "that begin and end compensation must stay whole. Put the pass `cutter-comp` before: then "
-        "there is the path of the centre, and no compensation in the control.",
+        "Points of it that are moved for another reason would be offset as well, and what begins "
+        "and ends it must stay whole. Put the pass `cutter-comp` before, which makes it the path "
+        "of the centre; `volumetric` does so if [control] has `cutter-comp-corners` and `-entry`.",
     ),
     "GX234": (
         "A program for a lathe",

@@ -126,10 +126,13 @@ class CompensationPass(Pass):
     """The base of a pass that resolves cutter compensation, which controls do in several ways."""
 
     @classmethod
-    def ways(cls, dialect: type[Dialect]) -> tuple[CompensationPass, ...]:
+    def ways(
+        cls, dialect: type[Dialect], control: Mapping[str, str | float]
+    ) -> tuple[CompensationPass, ...]:
         """Return the passes that, together, resolve in all ways in which such controls may do it.
 
-        Where a parameter of the machine decides there is one for each of its settings.
+        Where a parameter of the machine decides there is one for each of its settings, or the one
+        that `control` has, the settings of a machine file.
         """
         return ()
 

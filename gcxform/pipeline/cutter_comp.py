@@ -8,8 +8,8 @@ are. Whatever else a pass declares or returns is refused here, for every pass at
 of an arc, which have corners when they are rounded.
 
 What takes errors off moves every point, so before it the contour becomes the path of the centre by
-itself, where the control does that in one way alone: then nothing depends on what is not known but
-the radius, which is asked for.
+itself, where the control does that in one way alone, or the machine file says in which: then
+nothing depends on what is not known but the radius, which is asked for.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def with_centre_path(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]
     """Return a plan that resolves the contours of a program where errors are taken off them.
 
     The plan itself where it does so already, where nothing is to be resolved, and where parameters
-    of the machine decide how. With it comes what the certificate says of that.
+    of the machine decide how that nobody has said. With it comes what the certificate says of that.
     """
     steps = plan.path_passes
     if resolved(steps) or not compensates(steps) or not _begins_contour(source):
@@ -60,7 +60,7 @@ def with_centre_path(plan: Plan, source: Source) -> tuple[Plan, tuple[str, ...]]
         way
         for kind in kinds
         if issubclass(kind, CompensationPass)
-        for way in kind.ways(plan.source)
+        for way in kind.ways(plan.source, plan.machine.control if plan.machine else {})
     ]
     if len(ways) != 1:
         return plan, ()

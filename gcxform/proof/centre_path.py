@@ -63,7 +63,7 @@ def ways_of(dialect: type[Dialect]) -> tuple[CompensationPass, ...]:
     """Return passes that resolve compensation in each way in which such controls may do it."""
     for step in default_registry().passes.values():
         if issubclass(step, CompensationPass):
-            return step.ways(dialect)
+            return step.ways(dialect, {})
     return ()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -37,7 +38,8 @@ class CutterComp(gx.CompensationPass):
     parameters of the machine: say what they are set to, here or in the machine file
     (`cutter-comp-corners`, `cutter-comp-entry`).
 
-    Where the errors of a machine are taken off a program for LinuxCNC that is done by itself.
+    Where the errors of a machine are taken off a program that is done by itself, for LinuxCNC and
+    where the machine file says both.
     """
 
     name = "cutter-comp"
@@ -83,14 +85,21 @@ class CutterComp(gx.CompensationPass):
         prove_beside(before, after, straight, linear, beside_next)
 
     @classmethod
-    def ways(cls, dialect: type[gx.Dialect]) -> tuple[CutterComp, ...]:
-        """Return one of it for each setting that a control may have."""
+    def ways(
+        cls, dialect: type[gx.Dialect], control: Mapping[str, str | float]
+    ) -> tuple[CutterComp, ...]:
+        """Return one of it for each setting that a control may have.
+
+        What a machine file says is left to it: a program may say otherwise.
+        """
         rule = dialect.cutter_comp
-        return tuple(
-            cls(corners=corners, entry=entry)
-            for corners in ([Corners(rule.corners)] if rule.corners else Corners)
-            for entry in ([Entry(rule.entry)] if rule.entry else Entry)
-        )
+        corners: list[Corners | None] = [Corners(rule.corners)] if rule.corners else [*Corners]
+        entries: list[Entry | None] = [Entry(rule.entry)] if rule.entry else [*Entry]
+        if f"{cls.name}-corners" in control and not rule.corners:
+            corners = [None]
+        if f"{cls.name}-entry" in control and not rule.entry:
+            entries = [None]
+        return tuple(cls(corners=one, entry=other) for one in corners for other in entries)
 
     def stops(self, path: gx.Toolpath, context: gx.PassContext) -> gx.InputError | None:
         """Return where LinuxCNC stops; of other controls it is not known."""
