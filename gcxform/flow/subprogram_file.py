@@ -6,7 +6,9 @@ that something else has left, and leave one. A file with O-words is one if nothi
 outside of what they define.
 
 Where such a file neither moves anything nor says or asks where anything is, no error of a machine
-is to be taken off it, wherever it is called.
+is to be taken off it, wherever it is called. The same holds where it moves in rapids to points of
+the machine alone, off which no error is taken anywhere, or in what is not of this file: another one
+that it calls, or a code that the control does not have, which the machine must have of its own.
 """
 
 from __future__ import annotations
@@ -16,17 +18,22 @@ from collections.abc import Collection
 
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.listing import Listing, bare
-from gcxform.flow.lookup import Folders
+from gcxform.flow.lookup import Folders, LookupFailedError
 from gcxform.flow.numbered_files import begins_program
+from gcxform.flow.oword_names import name_of
 from gcxform.flow.run_state import whole_number
 from gcxform.modal.meaning.meaning import OWN_MOVES, PRESETS, Meaning
 from gcxform.syntax.source import Source
-from gcxform.syntax.tree import Block, Expression, Statement, Word
+from gcxform.syntax.tree import Block, Expression, Number, Statement, Word
+from gcxform.values import dataclass
 
 PLACES = re.compile(
     rb"#[ \t]*(?:[\[#]|50[0-9]{2}(?![0-9])|542|<[ \t]*_[xyzabcuvw][ \t]*>)", re.IGNORECASE
 )
 """Parameters that say where axes stand or were touched, and those whose number is computed."""
+NO_SUCH_CODE = "GX201"
+TAKEN = frozenset("NPQLS")
+"""Words that a code of the machine's own may take; none of them says where an axis goes."""
 ELSEWHERE = frozenset({"G65", "G66", "G66.1", "M96", "M97", "M98", "M198"})
 """Codes that lead to other lines, or to other programs."""
 
@@ -42,22 +49,91 @@ def only_returns(source: Source, dialect: type[Dialect]) -> bool:
     return bool(back) and not any(listing.meaning(n).ends for n in special if n not in back)
 
 
-def moves_nothing(source: Source, dialect: type[Dialect], calling: Collection[str]) -> bool:
-    """Whether a file moves no axis, sets no zero, asks not where axes stand, and calls no other.
+@dataclass(frozen=True)
+class Still:
+    """Looks for what moves in a file, or says or asks where something is.
 
-    `calling` are the codes that call programs on this machine, besides those of the control.
+    calling   codes that call programs on this machine, besides those of the control
+    folders   where files are looked up that are called
+    rapids    whether rapids to points of the machine are left to it by all that is done
     """
-    listing = _listing(source, dialect)
-    if PLACES.search(listing.window.text):
-        return False
-    meanings = zip(listing.table.shapes.shapes, listing.table.meanings, strict=True)
-    codes = ELSEWHERE.union(calling)
-    if any(_goes(shape.block, meaning, dialect, codes) for shape, meaning in meanings):
-        return False
+
+    dialect: type[Dialect]
+    calling: Collection[str] = ()
+    folders: Folders | None = None
+    rapids: bool = False
+
+    def but_for(self, source: Source, known: frozenset[str] = frozenset()) -> list[str] | None:
+        """Return in what a file moves that is left to itself, in words; None if in more than that.
+
+        `known` are the files that are being looked at already, by what they are called by.
+        """
+        listing = _listing(source, self.dialect)
+        if PLACES.search(listing.window.text):
+            return None
+        found: dict[str, None] = {}
+        for shape, meaning in zip(listing.table.shapes.shapes, listing.table.meanings, strict=True):
+            own = self._left(shape.block, meaning)
+            if not own and _goes(shape.block, meaning, self.dialect, ELSEWHERE.union(self.calling)):
+                return None
+            found |= {own: None} if own else {}
+        for label in _called(listing) - known:
+            more = self._in_file(label, known | {label})
+            if more is None:
+                return None
+            found |= dict.fromkeys(more)
+        return list(found)
+
+    def _left(self, block: Block, meaning: Meaning) -> str:
+        """Return as what a block is left to itself, whatever it does; nothing if it is not."""
+        if self.rapids and _to_the_machine(block, meaning):
+            return "rapids to points of the machine"
+        refused = meaning.refusal is not None and meaning.refusal.code == NO_SUCH_CODE
+        codes = [f"M{whole_number(word)}" for word in block.words if word.address == "M"]
+        takes = {word.address for word in block.words if word.address != "M"}
+        own = refused and len(codes) == 1 and takes <= TAKEN and codes[0] not in self.calling
+        return f"{codes[0]}, which the machine has of its own" if own else ""
+
+    def _in_file(self, label: str, known: frozenset[str]) -> list[str] | None:
+        """Return in what a file that is called moves, as `but_for` does; by itself if not at hand.
+
+        One whose name is computed may be any, so something may move.
+        """
+        if "[" in label:
+            return None
+        name = label.strip("<>")
+        try:
+            files = [*self.folders.of_name(name)] if self.folders is not None else []
+        except LookupFailedError:
+            return None
+        inside = [self.but_for(Source.of_bytes(file.text, file.name), known) for file in files]
+        if any(each is None for each in inside):
+            return None
+        more = [word for each in inside if each is not None for word in each]
+        return more if files else [f"{name_of(name)}, which is not at hand"]
+
+
+def _called(listing: Listing) -> set[str]:
+    """Return what a file calls that it does not define."""
     blocks = [listing.block(line) for line in listing.special.tolist()]
     flow = [item for block in blocks for item in block.items if _keyword_of(item)]
-    defined = {_label(item) for item in flow if _keyword_of(item) == "SUB"}
-    return all(_keyword_of(item) != "CALL" or _label(item) in defined for item in flow)
+    named = {key: {_label(i) for i in flow if _keyword_of(i) == key} for key in ("SUB", "CALL")}
+    return named["CALL"] - named["SUB"]
+
+
+def _to_the_machine(block: Block, meaning: Meaning) -> bool:
+    """Whether a block is a rapid to a point of the machine, by whatever way its caller stands.
+
+    A way home over a point that is given counts in coordinates of the caller, but for a step of
+    nothing.
+    """
+    codes = {f"G{whole_number(word)}" for word in block.words if word.address == "G"}
+    values = [word.value for word in block.words if word.address in meaning.axes]
+    acts = [act.name for act in meaning.acts]
+    if meaning.refusal is not None or block.error is not None:
+        return False
+    stays = "G91" in codes and all(isinstance(v, Number) and not v.value for v in values)
+    return (acts == ["machine"] and "G0" in codes) or (acts == ["home"] and (stays or not values))
 
 
 def _goes(block: Block, meaning: Meaning, dialect: type[Dialect], codes: frozenset[str]) -> bool:

@@ -5,8 +5,9 @@ state that the source leaves, so modes that the passes have changed are stated a
 return. Where what is written would depend on what is not known the file is kept, byte for byte, if
 no pass turns positions into others: whoever calls it finds what it was. The certificate says so.
 
-A pass that does turn them keeps what moves nothing, or nothing but in what it calls that is not at
-hand. Errors are those of a place: all else is for the run of the program that calls it, or
+A pass that does turn them keeps what moves nothing, or nothing but in what is not of this file, and
+one that takes off errors what goes in rapids to points of the machine alone, which it leaves to
+that. Errors are those of a place: all else is for the run of the program that calls it, or
 `[entry]` says where the axes stand and in which modes. Then it begins and ends at commands that its
 caller gives and expects (`at_call.py`).
 """
@@ -22,8 +23,9 @@ import numpy as np
 from gcxform.diagnostics import Diagnostic, InputError, Location, Severity
 from gcxform.dialect.dialect import Dialect
 from gcxform.flow.detection import aliases
+from gcxform.flow.lookup import Folders
 from gcxform.flow.straightened import located
-from gcxform.flow.subprogram_file import moves_nothing
+from gcxform.flow.subprogram_file import Still
 from gcxform.flow.uncalled_subprograms import HINT
 from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
 from gcxform.modal.reader import windows_of
@@ -31,6 +33,7 @@ from gcxform.modal.state import Entry, State
 from gcxform.pipeline.at_call import FROM_THE_START, check_left, going_back, led_in
 from gcxform.pipeline.certificate import Certificate
 from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.chain import compensates
 from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
@@ -78,9 +81,11 @@ def run_subprogram(
     """Run a plan on a file that is a subprogram by itself. Raises GcxformError."""
     folds = any(step.demands.folds for step in plan.path_passes)
     changes, held, again = plan.marks(source).changes, Held(), "on" if verify == "off" else verify
-    if (changes or folds) and _moves_nothing(plan, source):
+    still = _still_but_for(plan, source) if changes or folds else None
+    if still is not None:
         done = certificate(*_run_of_text(plan, source, verify, held))
-        done.assumed.append("this is a subprogram in which nothing moves: kept as it stands")
+        but = f" but in {' and in '.join(still)}" if still else ""
+        done.assumed.append(f"this is a subprogram in which nothing moves{but}: kept as it stands")
     elif folds:
         raise _refusal(HINT)
     elif changes and plan.reading.entry == Entry():
@@ -128,10 +133,18 @@ def _the_same(plan: Plan, source: Source, verify: str, held: Held) -> Certificat
     return done
 
 
-def _moves_nothing(plan: Plan, source: Source) -> bool:
-    """Whether a file may stay, for in it nothing moves. Folding shifts is not asked of it then."""
-    calling = aliases(plan.machine_reading.control)
-    return plan.source is plan.target and moves_nothing(source, plan.source, calling)
+def _still_but_for(plan: Plan, source: Source) -> list[str] | None:
+    """Return in what a file moves that may stay all the same, in words; None if it may not stay.
+
+    Folding shifts is not asked of it then.
+    """
+    if plan.source is not plan.target:
+        return None
+    reading, lookup = plan.machine_reading, plan.source.flow_rule.lookup
+    beside = [source.folder] if source.folder is not None else []
+    folders = Folders([*beside, *reading.subprograms], lookup, source.suffix)
+    rapids = compensates(plan.path_passes)
+    return Still(plan.source, aliases(reading.control), folders, rapids).but_for(source)
 
 
 def _entered(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:

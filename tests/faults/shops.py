@@ -241,8 +241,8 @@ FAULTS = (
     (
         "a subprogram that calls another file is one in which nothing moves",
         "gcxform/flow/subprogram_file.py",
-        'return all(_keyword_of(item) != "CALL" or _label(item) in defined for item in flow)',
-        "return True",
+        "if more is None:",
+        "if False:",
         "tests/test_still_subprograms.py::test_something_moves_or_may",
     ),
     (
@@ -253,10 +253,31 @@ FAULTS = (
         "tests/test_still_subprograms.py::test_something_moves_or_may",
     ),
     (
+        "a way home over a point is a rapid to a point of the machine",
+        "gcxform/flow/subprogram_file.py",
+        "(stays or not values)",
+        "True",
+        "tests/test_still_subprograms.py::test_something_moves_or_may",
+    ),
+    (
+        "a feed to a point of the machine is left to it in a subprogram",
+        "gcxform/flow/subprogram_file.py",
+        '(acts == ["machine"] and "G0" in codes)',
+        'acts == ["machine"]',
+        "tests/test_still_subprograms.py::test_something_moves_or_may",
+    ),
+    (
+        "rapids of subprograms stay where a pass turns them into others",
+        "gcxform/pipeline/subprogram.py",
+        "rapids = compensates(plan.path_passes)",
+        "rapids = True",
+        "tests/test_corpus.py::test_case[bad/gx226-alone-rapids-rtcp]",
+    ),
+    (
         "a code that calls on this machine is one that moves nothing",
         "gcxform/flow/subprogram_file.py",
-        "codes = ELSEWHERE.union(calling)",
-        "codes = ELSEWHERE",
+        "ELSEWHERE.union(self.calling)",
+        "ELSEWHERE",
         "tests/test_still_subprograms.py::test_codes_that_call_on_this_machine",
     ),
     (
