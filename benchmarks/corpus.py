@@ -170,6 +170,8 @@ def filled_in(dialect: str, path: str, chain: str, corpus: Path) -> Pipeline:
     made = Pipeline.of_spec(replace(spec, passes=passes), registry, dialect)
     if "entry" in user:
         made = replace(made, reading=replace(made.reading, entry=entry_of(user["entry"])))
+    if "tool" in user:
+        made = replace(made, reading=replace(made.reading, tool=user["tool"]))
     if "beside" in user:
         folder = (corpus / path).parent / user["beside"]
         made = replace(made, reading=replace(made.reading, subprograms=(folder,)))
