@@ -17,10 +17,10 @@ import grbl_rules
 import corpus
 
 LEAST = {
-    "fanuc": (34, 23),
+    "fanuc": (34, 27),
     "grbl": (38, 37),
-    "haas": (13, 10),
-    "linuxcnc": (129, 91),
+    "haas": (13, 11),
+    "linuxcnc": (129, 98),
     "siemens": (54,),
     "heidenhain": (18,),
 }
