@@ -176,6 +176,13 @@ MUTATIONS = (
         f"{CORPUS}[cutter-comp/gx350-before-along]",
     ),
     Mutation(
+        "cutter-comp: arcs that meet straight but for their last decimal have a corner",
+        "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
+        "STRAIGHT = 1e-3",
+        "STRAIGHT = 1e-4",
+        f"{CORPUS}[cutter-comp/tangent-arcs-rounded]",
+    ),
+    Mutation(
         "cutter-comp: corners go the wrong way",
         "plugins/gcxform_plugins/passes/cutter_comp/cutter_comp.py",
         "np.where(path.side[rows] > 0, gx.Kind.ARC_CW",

@@ -25,7 +25,9 @@ from gcxform_plugins.passes.cutter_comp.proof import prove_beside
 from gcxform_plugins.passes.cutter_comp.refusals import STILL, refuse_unresolved
 
 CODES = ("G41", "G42", "G41.1", "G42.1")
-STRAIGHT = 1e-4  # rad; smaller turns are none, on controls of which nothing else is known
+STRAIGHT = 1e-3
+"""rad; smaller turns are none, on controls of which nothing else is known: so much the last decimal
+makes of arcs that meet straight, and the centre is nearer by half a millionth of the radius."""
 
 
 @dataclass(frozen=True)
