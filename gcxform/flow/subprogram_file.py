@@ -74,7 +74,7 @@ class Still:
         found: dict[str, None] = {}
         for shape, meaning in zip(listing.table.shapes.shapes, listing.table.meanings, strict=True):
             own = self._left(shape.block, meaning)
-            if not own and _goes(shape.block, meaning, self.dialect, ELSEWHERE.union(self.calling)):
+            if not own and _goes(shape.block, meaning, self.dialect, self._leads):
                 return None
             found |= {own: None} if own else {}
         for label in _called(listing) - known:
@@ -84,6 +84,11 @@ class Still:
             found |= dict.fromkeys(more)
         return list(found)
 
+    @property
+    def _leads(self) -> frozenset[str]:
+        """The codes that lead to other lines or programs on this machine."""
+        return ELSEWHERE.union(self.calling)
+
     def _left(self, block: Block, meaning: Meaning) -> str:
         """Return as what a block is left to itself, whatever it does; nothing if it is not."""
         if self.rapids and _to_the_machine(block, meaning):
@@ -91,7 +96,8 @@ class Still:
         refused = meaning.refusal is not None and meaning.refusal.code == NO_SUCH_CODE
         codes = [f"M{whole_number(word)}" for word in block.words if word.address == "M"]
         takes = {word.address for word in block.words if word.address != "M"}
-        own = refused and len(codes) == 1 and takes <= TAKEN and codes[0] not in self.calling
+        leads = not self._leads.isdisjoint(codes)
+        own = refused and len(codes) == 1 and takes <= TAKEN and not leads
         return f"{codes[0]}, which the machine has of its own" if own else ""
 
     def _in_file(self, label: str, known: frozenset[str]) -> list[str] | None:
