@@ -17,6 +17,7 @@ structure = "keep"
 use = "volumetric"
 model = "model.toml"
 tolerance = {}
+lean = 0.1
 part-origin = [0.0, 0.0, 0.0]
 """
 MODEL = """format = 1

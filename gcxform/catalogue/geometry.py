@@ -102,9 +102,9 @@ CODES: dict[str, tuple[str, str]] = {
     "GX318": (
         "A hole that is called as it stands, and leans",
         "The control bores it by itself, from where a corrected move has led the tool. On the way "
-        "down the error of the machine changes, and by more than `tolerance` (1 um if absent) "
-        "the ground would be beside where it should be. Give a larger tolerance, or let the CAM "
-        "write the hole as plain moves, which are corrected all the way.",
+        "down the error of the machine changes, so that the ground would be beside where it should "
+        "be by more than `lean` allows (10 um if absent). Allow more, or let the CAM write the "
+        "hole as plain moves, which are corrected all the way.",
     ),
     "GX320": (
         "A feed that cannot be converted",

@@ -108,7 +108,7 @@ By passes that change positions such lines stand as they do, and in no program t
 | cycle 207 | the same, where a machine is compensated; else it is read |
 | X and Y behind 202 and 204, which go beside the hole | are lost |
 | those, behind a rapid that no pass corrects (Z is not known) | refused |
-| those that lean by more than `tolerance`, at Q201, or below the part (204: Q250, Q252) | refused |
+| those that lean by more than `lean`, at Q201, or below the part (204: Q250, Q252) | refused |
 | FN 14, 19, 20, 26, 29, 37; FN 15, 16, 27, 38 of parameters; QR of many digits | all |
 """
 

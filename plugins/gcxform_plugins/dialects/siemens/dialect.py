@@ -165,7 +165,7 @@ By passes that change positions (`volumetric`, `cutter-comp`) of these only such
 |---|---|
 | CYCLE84, 840, 86, 87, 88, and 81 to 89 as they are not read; with MCALL too | it ends at RTP |
 | those, behind a rapid that no pass corrects (Z is not known) | refused |
-| those, deep enough to lean by more than `tolerance`; AMODE of ones other than 0 and 2 | refused |
+| those, deep enough to lean by more than `lean`; AMODE of ones other than 0 and 2 | refused |
 | POCKET, SLOT, LONGHOLE, CYCLE60 to 64, 70 to 79, 802, 899 | X, Y and F are lost, or Z as well |
 | those, where positions are compensated: their own ways would not be | refused |
 | AXN, a contour of labels or numbers of the program, a frame that tilts | refused |

@@ -6,6 +6,7 @@ so that the ground is beside where it should be; and along the tool it is off by
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,7 +75,7 @@ class Bored:
 
 
 def check_bored(window: Window) -> None:
-    """Refuse grounds that are outside the tables, or beyond the tolerance across the tool."""
+    """Refuse grounds outside the tables, and those that are farther off than `lean` allows."""
     bored, step = Bored.of(window.path), window.step
     if not len(bored.rows):
         return
@@ -86,10 +87,10 @@ def check_bored(window: Window) -> None:
         hint = 'outside = "clamp" or "extrapolate" goes beyond, or measure a larger volume'
         raise window.path.refuse("GX310", bored.rows[beyond[:1]], message, hint)
     across, _ = bored.off(window)
-    wrong = np.flatnonzero(across > step.limit)[:1]  # unknown places are refused by what writes
+    wrong = np.flatnonzero(across > step.lean)[:1]  # unknown places are refused by what writes
     if len(wrong):
         off, depth = float(across[wrong[0]]) * 1000, float(bored.depth[wrong[0]])
         message = f"{depth:.6g} mm below where it ends, the ground of this hole is {off:.2f} um "
-        message += f"beside its place, and {step.limit * 1000:g} um are allowed"
-        hint = "a larger tolerance allows it, or let the CAM write the hole as plain moves"
+        message += f"beside its place, and {step.lean * 1000:g} um are allowed"
+        hint = f"lean = {math.ceil(off) / 1000:g} allows it, or let the CAM write plain moves"
         raise window.path.refuse("GX318", bored.rows[wrong], message, hint)

@@ -25,6 +25,10 @@ class VolumetricOptions:
             "residual allowed between cuts; absent: lines are exact, arcs within 1 um", above=0.0
         ),
     ] = None
+    lean: Annotated[
+        gx.Length,
+        gx.Option("how far the ground of a hole may be off that is called as it stands", above=0.0),
+    ] = 0.01
     max_correction: Annotated[
         gx.Length, gx.Option("a larger correction is an error", above=0.0)
     ] = 0.2
