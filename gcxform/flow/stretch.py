@@ -142,7 +142,7 @@ class Stretch:
             if not step or not step.in_order or (slots.digits and not slots.fit(numbers, at)):
                 break
             if step.behind is node and behind < stop and keys[behind] == keys[k]:
-                behind = ahead.alike(k, stop, slots)
+                behind = max(ahead.alike(k, stop, slots), behind)
             steps[step] = len(given) + starts[behind - 1] - at
             texts += [step.in_order] * (behind - k)
             given += numbers[at : starts[behind]]
