@@ -34,7 +34,7 @@ class CycleCalls(Swivelling):
             except cycles.CycleError as error:
                 self.refuse(f"{name}: {error}", item)
         elif line.modal is not None:
-            self.refuse(f"MCALL of {name} is not read", item)
+            self.refuse(WHY.get(name, f"MCALL of {name}(...) is not read"), item)
         elif self._quiet(name, given):
             self._one(line, "alone", item)
             if name != "CYCLE800":
