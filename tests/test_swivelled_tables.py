@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from quaternions import rotated
-from test_tilted_planes import AXES, TOOL, tip_by_quaternions
+from test_tilted_planes import AXES, TOOL, led_to, tip_by_quaternions
 
 import gcxform as gx
 from gcxform.machine.file import load_machine
@@ -36,11 +36,7 @@ def machine(folder: Path, name: str, work: list[float], by: str, gauge: tuple = 
 
 def reached(machine: Machine, standing: str, cycle: str, point: str) -> list[float]:
     """Return where X, Y and Z of the machine stand at a point of a plane, and the rotary axes."""
-    text = f"G710 G90 G54 G17 G94\nT1 M6\nG0 {standing}\n{cycle}\nG0 {point}\nM30\n"
-    siemens = default_registry().dialect("siemens")
-    path = gx.Program(text.encode(), siemens, Reading().on(machine)).path
-    work = machine.work_offsets["G54"]
-    return [path.end[-1][k] + work.get(axis, 0.0) for k, axis in enumerate(path.axes)]
+    return led_to(machine, f"T1 M6\nG0 {standing}\n{cycle}\nG0 {point}", "siemens", "G710")
 
 
 def test_published_poses(shared: Path, tmp_path: Path) -> None:

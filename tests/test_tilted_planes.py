@@ -49,11 +49,11 @@ def reached(machine: Machine, rotary: str, plane: str, point: str) -> list[float
     return led_to(machine, f"{rotary}\n{plane}\nG53.1\nG43 H1 {point}")
 
 
-def led_to(machine: Machine, blocks: str) -> list[float]:
+def led_to(machine: Machine, blocks: str, dialect: str = "fanuc", unit: str = "G21") -> list[float]:
     """Return where the axes of the machine stand behind blocks."""
-    text = f"G21 G90 G54 G17 G0\n{blocks}\nM30\n"
-    fanuc = default_registry().dialect("fanuc")
-    path = gx.Program(text.encode(), fanuc, Reading().on(machine)).path
+    text = f"{unit} G90 G54 G17 G0\n{blocks}\nM30\n"
+    control = default_registry().dialect(dialect)
+    path = gx.Program(text.encode(), control, Reading().on(machine)).path
     work = machine.work_offsets["G54"]
     return [path.end[-1][k] + work.get(axis, 0.0) for k, axis in enumerate(path.axes)]
 
