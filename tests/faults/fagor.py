@@ -588,4 +588,11 @@ MUTATIONS = (
         "return False",
         "tests/test_corpus.py::test_case[dialects/across/centres-for-fagor]",
     ),
+    Mutation(
+        "fagor: an axis that is not named beside a work offset stands where it stood",
+        "plugins/gcxform_plugins/dialects/fagor/places.py",
+        "stays = told if quiet(others) else set()",
+        "stays = self.at.keys() if quiet(others) else set()",
+        "tests/test_corpus.py::test_case[dialects/fagor/drilling-in-another-offset]",
+    ),
 )

@@ -87,16 +87,20 @@ class Places:
             self.steps = "G91" in codes
         moves = [code for code in ("G0", "G1", "G2", "G3") if code in codes]
         self.motion = moves[0] if moves else self.motion
+        told = set()
         for item in items:
             if item.kind not in ("word", "incremental") or item.name not in tables.AXES:
                 continue
             value = Decimal(item.numbers[0])
             if item.kind == "word" and not self.steps:
                 self.at[item.name] = value
+                told.add(item.name)
             elif item.name in self.at:
                 self.at[item.name] += value
         if not quiet(items):
-            self.at = {}
+            others = [item for item in items if code_of(item) not in tables.WORK]
+            stays = told if quiet(others) else set()
+            self.at = {axis: self.at[axis] for axis in self.at.keys() & stays}
 
 
 def quiet(items: Sequence[gx.Item]) -> bool:
