@@ -239,6 +239,20 @@ class LineShapes(ABC):
         numbers, parts = self._parsed(line)
         return [part.item(numbers) for part in parts]
 
+    def text_in(self, line: int, item: Item, text: str | None = None) -> str:
+        """Return an item of a line, or of a text for it, as it is written there.
+
+        Its place is that in the first line of its shape: numbers before it may be longer here.
+        """
+        said = self.lines[line] if text is None else text
+        found = said[slice(*item.place)]
+        if found.upper() == item.name and not item.numbers:
+            return found
+        numbers, parts = self._parsed(line, said)
+        bare = ["".join(number.split()) for number in numbers]
+        there = (part for part in parts if part.item(bare)[:3] == item[:3])
+        return said[slice(*next(there, item).place)]
+
     def grammar_named(self, package: str, name: str) -> TreeShapes:
         """Return what parses by another grammar of the language, as `grammar` names one."""
         return TreeShapes(_grammar(package, name))

@@ -926,6 +926,13 @@ MUTATIONS = (
         "test_a_comment_of_the_same_language_is_nothing_that_goes_along_either",
     ),
     Mutation(
+        "siemens: what is said stands where it did in the first line like it",
+        "gcxform/flow/line_shapes.py",
+        "return said[slice(*next(there, item).place)]",
+        "return found",
+        f"{CASES}[dialects/siemens/tool-by-name-again]",
+    ),
+    Mutation(
         "siemens: what stands beside an arc is gone with it",
         "plugins/gcxform_plugins/dialects/siemens/in_place.py",
         '(item.numbers[0].lstrip("0") or "0") in CODES',

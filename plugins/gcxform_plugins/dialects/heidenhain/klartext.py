@@ -276,7 +276,7 @@ class Klartext(Planes):
 
     def _tool_number(self, item: gx.Item) -> str:
         if item.name.startswith('"'):
-            self.tool_name = self.lines[self.line][slice(*item.place)].strip('"')
+            self.tool_name = self.text_in(self.line, item).strip('"')
             return self._number_of(self.tool_name, item)
         text = self.number_of(item)
         if not text.isdigit() or len(text) > LONGEST_TOOL:

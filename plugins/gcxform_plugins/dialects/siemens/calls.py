@@ -81,8 +81,7 @@ class Calls(Computing):
         bare = [i for i in items if i.kind not in ("label", "main_number") and i.name != "N"]
         if len(bare) != 1 or bare[0].kind not in ("flow", "call") or not self.finds_programs:
             return "", ""
-        start, end = bare[0].place
-        found = INDIRECT.fullmatch(code(self.lines[self.line], True)[start:end].strip())
+        found = INDIRECT.fullmatch(self.text_in(self.line, bare[0]).strip())
         if found is None:
             return "", ""
         path = found["text"] or found["path"] or ""

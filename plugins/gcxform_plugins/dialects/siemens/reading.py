@@ -112,7 +112,7 @@ class Statements(gx.Translator):
 
     def text_of(self, item: gx.Item) -> str:
         """Return an item as it is written."""
-        return (self.straight or self.lines[self.line])[slice(*item.place)]
+        return self.text_in(self.line, item, self.straight or None)
 
     def _nothing(self, line: Line, item: gx.Item) -> None:
         """Take labels, which jumps look for, and the name of the program."""
