@@ -364,4 +364,18 @@ MUTATIONS = (
         ")",
         swivel("folded"),
     ),
+    Mutation(
+        "planes: a way back goes with the call that asks for it",
+        SWIVELS,
+        "if moves and not kept:",
+        "if moves and kept:",
+        swivel("folded-drawn-back"),
+    ),
+    Mutation(
+        "planes: behind a way back it is known where the tool stands",
+        SWIVELS,
+        "            if moves:",
+        "            if not moves:",
+        swivel("and-drawn-back"),
+    ),
 )

@@ -84,6 +84,7 @@ kept as it stands, with all that is lost behind it.
 | CYCLE800 with angles, on a table | a plane, by _MODE of three turns: `swivelling.py` | SW 481 |
 | its _DIR | by the value of `[control] swivel-reference`, or the one attitude in limits | SW 481 |
 | its _ST, other than 0 and 10; solid and projected angles; in a frame | refused | [K] |
+| its _FR other than 0, its _ST of 10 | X, Y, Z are lost; refused where the call goes | SW 481 |
 | CYCLE800() behind turned axes | they are lost: it is up to the builder if they turn back | [K] |
 | CYCLE81, CYCLE82 | rapid to RFP + SDIS, feed to DP, dwell, rapid to RTP | C81 |
 | GMODE, DMODE, AMODE | 0; the plane in force; absolute, seconds; else refused | X |

@@ -7,7 +7,8 @@ go along, in the order that _MODE says (public specification of CAM posts for th
 a CAM wrote for two machines and two controls). _DIR chooses the attitude: the lower or the higher
 value of one axis, which the machine's builder has set (operating manual). Where that is followed is
 in `gcxform/modal/frames/planes.py`: to it this is G68.2 and G53.1. What is drawn back before, or
-follows the tip, moves X, Y and Z: where they are is lost.
+follows the tip, moves X, Y and Z: where they are is lost. Where the call does not stay as it stands
+that way would be missing, and the table would turn beside the tool: it is refused.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from decimal import Decimal
 import numpy as np
 
 import gcxform as gx
-from gcxform_plugins.dialects.siemens.cycles import CycleError
+from gcxform_plugins.dialects.siemens.cycles import NO_RETRACT, CycleError
 from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
@@ -27,7 +28,8 @@ from gcxform_plugins.dialects.siemens.reading import Statements
 
 ORDERS = {"57": "XYZ", "45": "XZY", "54": "YXZ", "30": "YZX", "39": "ZXY", "27": "ZYX"}
 """The axes of the three turns, by _MODE; solid and projected angles are other modes."""
-NEW = frozenset(("", "0", "10"))
+WITH_TIP = "10"
+NEW = frozenset(("", "0", WITH_TIP))
 """_ST of a plane that is no addition to another one; its ten lets the tip stay where it is."""
 PLANE, TURN, LEAVE = "G68.2", "G53.1", "G69"
 """The codes of blocks that say a plane, turn the table onto it, and leave it."""
@@ -35,6 +37,9 @@ ENDS = "0"
 """_TC that ends a plane."""
 G17 = frozenset(("", "0", "1"))
 MOST = 16
+NO_WAY = frozenset(("", NO_RETRACT))
+WAY = "CYCLE800 draws the tool back or leads it along, and where to only the machine knows"
+AWAY = "draw it back in a line before (G0 SUPA Z and where to), with 0 for _FR and for _ST"
 APART = "CYCLE800 that turns a table, and more than its plane is in force"
 ALONE = "write it where no frame of the program is in force, in G17, and outside of MCALL"
 
@@ -101,7 +106,16 @@ class Swivelling(Statements):
 
     def take_swivel(self, line: Line, item: gx.Item, given: Sequence[str]) -> None:
         """Take a plane, or its end. Raises InputError."""
-        if given[1:2] == [f'"{ENDS}"']:
+        stays = self.reading.asides and not self.reading.turns_plainly
+        ends = given[1:2] == [f'"{ENDS}"']
+        kept = self.reading.asides if ends else stays
+        moves = given[0] not in NO_WAY or given[2:3] == [WITH_TIP]
+        if moves and not kept:
+            self.refuse(WAY, item, AWAY)
+        if ends:
+            line.asides += [self.text_of(item)] * kept
+            if moves:
+                self._lose_all()
             return
         try:
             plane, attitude = plane_of(given)
@@ -110,7 +124,6 @@ class Swivelling(Statements):
         apart = self.following or self.comp or self.drilling is not None or self.plane != "XY"
         if apart or self.frame != Frame():
             self.refuse(APART, item, ALONE)
-        stays = self.reading.asides and not self.reading.turns_plainly
         said = gx.Speller.aside(self.text_of(item)) if stays else ""
         line.ahead += [" ".join(["G90", *plane, said]).rstrip(), f"G0 {attitude}"]
         self.said, self.said_steps, self.swivelled = "", False, True
