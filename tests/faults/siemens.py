@@ -1397,8 +1397,8 @@ MUTATIONS = (
     Mutation(
         "siemens: the name of a tool is looked for where its line has it that computes",
         READING,
-        "(self.straight or self.lines[self.line])",
-        "self.lines[self.line]",
+        "self.text_in(self.line, item, self.straight or None)",
+        "self.text_in(self.line, item)",
         f"{CASES}[dialects/siemens/tool-by-name-beside-a-value]",
     ),
     Mutation(
