@@ -1395,11 +1395,11 @@ MUTATIONS = (
         f"{LINES_BESIDE}::test_a_case_is_a_whole_number",
     ),
     Mutation(
-        "siemens: the name of a tool is looked for where its line has it that computes",
+        "siemens: a call is said as its line has it, where that computes",
         READING,
-        "self.text_in(self.line, item, self.straight or None)",
-        "self.text_in(self.line, item)",
-        f"{CASES}[dialects/siemens/tool-by-name-beside-a-value]",
+        "self.straight or None)",
+        "None)",
+        f"{CASES}[dialects/siemens/kept-hole-computed]",
     ),
     Mutation(
         "siemens: the older CYCLE832 switches TRAORI on, and is left out",
