@@ -108,12 +108,13 @@ class Swivelling(Statements):
         """Take a plane, or its end. Raises InputError."""
         stays = self.reading.asides and not self.reading.turns_plainly
         ends = given[1:2] == [f'"{ENDS}"']
-        kept = self.reading.asides if ends else stays
+        reading = self.reading
+        goes = reading.crosses and not reading.asides if ends else reading.turns_plainly
         moves = given[0] not in NO_WAY or given[2:3] == [WITH_TIP]
-        if moves and not kept:
+        if moves and goes:
             self.refuse(WAY, item, AWAY)
         if ends:
-            line.asides += [self.text_of(item)] * kept
+            line.asides += [self.text_of(item)] * self.reading.asides
             if moves:
                 self._lose_all()
             return
