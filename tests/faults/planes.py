@@ -276,8 +276,8 @@ MUTATIONS = (
     Mutation(
         "swivels: of an axis that turns without end one value is the lowest",
         PLANES,
-        "if chain.axes[column].limits is None or np.ptp(",
-        "if np.ptp(",
+        "apart[column] |= chain.axes[column].limits is None",
+        "pass",
         swivel("without-ends"),
     ),
     Mutation(
@@ -367,8 +367,8 @@ MUTATIONS = (
     Mutation(
         "planes: a way back goes with the call that asks for it",
         SWIVELS,
-        "if moves and not kept:",
-        "if moves and kept:",
+        "if moves and goes:",
+        "if False:",
         swivel("folded-drawn-back"),
     ),
     Mutation(
@@ -377,5 +377,19 @@ MUTATIONS = (
         "            if moves:",
         "            if not moves:",
         swivel("and-drawn-back"),
+    ),
+    Mutation(
+        "planes: where _DIR leads hangs on where the axes stand",
+        PLANES,
+        'open_ = bool(asked.written.get("P"))',
+        "open_ = False",
+        swivel("again"),
+    ),
+    Mutation(
+        "planes: the table that turns is the first move in a plane",
+        "plugins/gcxform_plugins/passes/offsets.py",
+        "moved = ~_turns_alone(path)",
+        "moved = path.kind >= 0",
+        swivel("folded-again"),
     ),
 )

@@ -111,9 +111,11 @@ def swivel(state: FrameState, asked: Asked) -> FrameState:
     """As G53.1, to the attitude that P says: of one axis the lower (-1) or the higher (1) value.
 
     With P0 no axis turns. Which axis that is the machine's builder has set; where only one attitude
-    is within the limits that one is taken (SINUMERIK operating manual, CYCLE800, _DIR).
+    is within the limits that one is taken (SINUMERIK operating manual, CYCLE800, _DIR). So it does
+    not hang on where the axes stand: only in which turn one without end comes to stand does, and
+    all of its turns are one place.
     """
-    return _oriented(state, asked, _said_attitude)
+    return _oriented(state, asked._replace(code="the swivel"), _said_attitude)
 
 
 def _oriented(
@@ -128,7 +130,8 @@ def _oriented(
     _check_ways(chain, asked)
     tilted = np.array(plane.turned)
     which = f"which attitude {asked.code} takes"
-    angles = attitude(chain, tilted, standing(chain, state, asked, which, PLANE), asked)
+    open_ = bool(asked.written.get("P"))
+    angles = attitude(chain, tilted, standing(chain, state, asked, which, PLANE, open_), asked)
     turned = carried(chain, tilted, angles)
     if np.abs(turned[2] - [0.0, 0.0, 1.0]).max() > FLAT:
         raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
@@ -159,10 +162,13 @@ def _spin(turned: Floats) -> float:
     return float(np.degrees(np.arctan2(turned[1, 0], turned[0, 0])))
 
 
-def standing(chain: Chain, state: FrameState, asked: Asked, what: str, turned: str) -> Floats:
+def standing(
+    chain: Chain, state: FrameState, asked: Asked, what: str, turned: str, open_: bool = False
+) -> Floats:
     """Return where the rotary axes stand in the machine, degrees. Raises ActError.
 
-    `what` depends on it, and `turned` is what turns with the axes.
+    `what` depends on it, and `turned` is what turns with the axes; where it may be `open_`, one of
+    which it is not known is said to be at 0.
     """
     found = np.full(len(chain.axes), np.nan)
     for n, axis in enumerate(chain.axes):
@@ -172,13 +178,13 @@ def standing(chain: Chain, state: FrameState, asked: Asked, what: str, turned: s
             if abs(state.zero_of(state.work)[k] - state.machine[k]) > EQUAL:
                 message = f"{asked.code}: {state.work} turns {axis.letter}, and {turned} with it"
                 raise ActError("GX213", message, f"say {turned} in a work offset that does not")
-        if np.isnan(found[n]):
+        if np.isnan(found[n]) and not open_:
             raise ActError(
                 "GX213",
                 f"{what} depends on where {axis.letter} stands",
                 f"write {axis.letter} before, or say start = {{ {axis.letter} = ... }} in [input]",
             )
-    return found
+    return np.asarray(np.nan_to_num(found))
 
 
 def _check_ways(chain: Chain, asked: Asked) -> None:
@@ -230,9 +236,13 @@ def _said_attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked)
     column = chain.letters.index(str(by))
     values = angles[:, column] * way
     chosen = values >= values.max() - APART
-    if chain.axes[column].limits is None or np.ptp(angles[chosen], axis=0).max() > EQUAL:
+    apart = [*(np.ptp(angles[chosen], axis=0) > EQUAL)]
+    apart[column] |= chain.axes[column].limits is None
+    if any(apart):
+        letter = chain.letters[apart.index(True)]
         message = f"which attitude has the lower {by} is not certain"
-        raise ActError("GX213", message, f"say limits in [axis.{by}] that leave one turn of it")
+        hint = f"say limits in [axis.{letter}] that leave one turn of it"
+        raise ActError("GX213", message, hint)
     return np.asarray(angles[chosen][0])
 
 

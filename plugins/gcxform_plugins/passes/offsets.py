@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import gcxform as gx
+from gcxform.vocabulary import Flags
 
 FLAT = 1e-15  # what is left of a word of another axis where nothing is
 
@@ -90,20 +91,23 @@ class Offsets(gx.Pass):
         """Refuse first moves in other coordinates that leave out an axis which is then unknown.
 
         An axis that no turn mixes with others stands where it stood. A frame in which nothing moves
-        is left before the program has moved at all, or behind another that it has stated.
+        is left before the program has moved at all, or behind another that it has stated. Where a
+        table turns onto a plane no word counts in that: the move behind is the first.
         """
         works = [frame.work for frame in path.frames]
         if not (path.frame == 0).any():
             works[0] = path.first
         turns = [(f.matrix, f.polar, name) for f, name in zip(path.frames, works, strict=True)]
-        before = np.append(0, path.frame[:-1])[: len(path)]
+        moved = ~_turns_alone(path)
+        last = np.maximum.accumulate(np.where(moved, np.arange(1, len(path) + 1), 0))
+        before = np.append(0, path.frame)[np.append(0, last[:-1])[: len(path)]]
         changes = np.array([[a != b for b in turns] for a in turns], np.bool_)[before, path.frame]
         mixed = np.array([_mixed(frame) for frame in path.frames])
         work = np.unique(works, return_inverse=True)[1]
         counts = mixed[before] | mixed[path.frame] | (work[before] != work[path.frame])[:, None]
         unknown = (np.isnan(path.end) & np.isnan(path.start))[:, :3] & counts
         lost = np.stack([path.lost >> k & 1 for k in range(3)], axis=1) == 1
-        rows = np.flatnonzero(changes & (unknown & lost).any(axis=1))
+        rows = np.flatnonzero(changes & moved & (unknown & lost).any(axis=1))
         if len(rows):
             message = (
                 "a first move in other coordinates leaves out an axis of which it is not known"
@@ -111,6 +115,14 @@ class Offsets(gx.Pass):
             message += " where it stands in them"
             hint = "name the axes in this block, and the work offset at the head of the program"
             raise path.refuse("GX213", rows, message, hint)
+
+
+def _turns_alone(path: gx.Toolpath) -> Flags:
+    """Return the rows (n,) in which rotary axes alone turn: nothing is known of X, Y and Z."""
+    rotary = path.start[:, 3:], path.end[:, 3:]
+    turns = ((rotary[0] != rotary[1]) & ~np.isnan(rotary[1])).any(axis=1)
+    known = ~np.isnan(path.start[:, :3]) | ~np.isnan(path.end[:, :3])
+    return np.asarray(turns & ~known.any(axis=1))
 
 
 def _mixed(frame: gx.Frame) -> list[bool]:
