@@ -60,7 +60,8 @@ CODES: dict[str, tuple[str, str]] = {
         "The file is a subprogram that another program calls. What it does depends on the modes "
         "and the positions that its caller leaves, and here something is written that would depend "
         "on them. The file is kept as it stands, which the certificate says too. Say how it is "
-        'called: `modes = "G91 G21 G94"`, `start`, `feed` and `parameters` in [entry], or --entry '
-        "for the modes; or transform the program that calls it, which finds it beside itself.",
+        'called: `modes = "G91 G21 G94"`, `start`, `feed` and `parameters` in [entry], which are '
+        'also what the call gives (`{ "1" = 5.0 }` for `o<hole> call [5]`), or --entry for the '
+        "modes; or transform the program that calls it, which finds it beside itself.",
     ),
 }

@@ -61,10 +61,15 @@ class Emitted:
     nth: Ints
 
     def leaving(
-        self, codes: tuple[str, ...], window: Window, table: MeaningTable, live: int
+        self, codes: tuple[str, ...], window: Window, table: MeaningTable, live: int, last: int
     ) -> Emitted:
-        """Return the text with codes in a block before the one with which the program ends."""
-        ends = table.flag("ends", window.shape[:live])
+        """Return the text with codes in a block before the one with which the program ends.
+
+        It also ends in its line `last`, from 0; -1: only where it says so.
+        """
+        ends = table.flag("ends", window.shape[:live]).copy()
+        if last in window.lines[:live]:
+            ends[last - window.first_line] = True
         if not ends.any():
             return self
         line = window.first_line + int(np.argmax(ends))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from gcxform.dialect.arithmetic import RS274, Key
 
 LOCALS = RS274.local
@@ -15,6 +17,11 @@ STANDS = (
 )
 STANDS += ("_inverse_time", "_units_per_minute", "_units_per_rev", "_feed", "_rpm")
 """The names that say where the axes stand, and what is in force; the last two are F and S."""
+
+NAMES_POSITION = re.compile(
+    rf"#[ \t]*(?:5[ \t]*4[ \t]*2|<[ \t]*(?:{'|'.join(STANDS)})[ \t]*>)", re.IGNORECASE
+)
+"""What names one of them, or a parameter of a position."""
 
 
 def is_local(key: Key) -> bool:

@@ -8,7 +8,6 @@ their call, to M98 the names alone; a count is rounded, halves to an even number
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -19,7 +18,14 @@ from gcxform.flow.listing import Definition, Listing, bare
 from gcxform.flow.modes import StoredModes
 from gcxform.flow.named_files import Subprograms
 from gcxform.flow.oword_loops import OWordLoops
-from gcxform.flow.oword_names import LOCALS, STANDS, is_local, is_named_local, name_of
+from gcxform.flow.oword_names import (
+    LOCALS,
+    NAMES_POSITION,
+    STANDS,
+    is_local,
+    is_named_local,
+    name_of,
+)
 from gcxform.flow.places import FIRST, Places, beside_zeros
 from gcxform.flow.residual import Edit
 from gcxform.flow.run_state import Call, whole_number
@@ -31,9 +37,6 @@ from gcxform.syntax.undecided import Undecided
 STORING = frozenset({70, 71, 72, 73})
 LEAVES = frozenset({"break", "continue"})
 POSITIONS = range(FIRST, FIRST + 9)
-NAMES_POSITION = re.compile(
-    rf"#[ \t]*(?:5[ \t]*4[ \t]*2|<[ \t]*(?:{'|'.join(STANDS)})[ \t]*>)", re.IGNORECASE
-)
 
 
 class OWords(OWordLoops):

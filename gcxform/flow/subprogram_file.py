@@ -123,7 +123,7 @@ def _called(listing: Listing) -> set[str]:
     """Return what a file calls that it does not define."""
     blocks = [listing.block(line) for line in listing.special.tolist()]
     flow = [item for block in blocks for item in block.items if _keyword_of(item)]
-    named = {key: {_label(i) for i in flow if _keyword_of(i) == key} for key in ("SUB", "CALL")}
+    named = {key: {label(i) for i in flow if _keyword_of(i) == key} for key in ("SUB", "CALL")}
     return named["CALL"] - named["SUB"]
 
 
@@ -168,7 +168,7 @@ def _only_defines(listing: Listing) -> bool:
     for line in range(len(listing)):
         if line in special:
             items = bare(listing.block(line))
-            word = _keyword(items[0]) if items else ""
+            word = keyword(items[0]) if items else ""
             if not inside and items and word != "SUB" and not _is_end(items):
                 return False
             inside = word == "SUB" or (inside and word != "ENDSUB")
@@ -179,16 +179,16 @@ def _only_defines(listing: Listing) -> bool:
 
 def _keyword_of(item: object) -> str:
     """Return the keyword of an O-word in capitals; nothing for all else that stands in a block."""
-    return _keyword(item) if isinstance(item, Statement) else ""
+    return keyword(item) if isinstance(item, Statement) else ""
 
 
-def _label(item: object) -> str:
+def label(item: object) -> str:
     """Return what an O-word is called by."""
     assert isinstance(item, Statement)
     return str(item.tree.children[1]).lower()
 
 
-def _keyword(item: Word | Statement) -> str:
+def keyword(item: Word | Statement) -> str:
     """Return the keyword of an O-word in capitals; nothing for what is none."""
     if not isinstance(item, Statement) or item.kind != "flow":
         return ""

@@ -36,7 +36,7 @@ class Entry:
     modes       codes in force, "G91"; at most one of a modal group
     start       position of axes, mm or degrees
     feed        feed in effect, in the unit of the program
-    parameters  values of parameters, by number or name
+    parameters  values of parameters, by number or name: of its arguments those that they set
     """
 
     modes: tuple[str, ...] = ()

@@ -23,6 +23,8 @@ from gcxform.stamps.chain import described
 from gcxform.syntax.source import Source, lines_in
 from gcxform.version import VERSION
 
+WHOLE_FILE = "whether this is a whole program"
+
 
 def certificate(run: Run, out: Output) -> Certificate:
     """Return what was proved of a run, once its output is complete."""
@@ -206,7 +208,7 @@ def _of_the_file(run: Run) -> Iterator[str]:
         )
         yield f"{what}: {run.executed.kept}"
     if why := run.findings.file.no_end:
-        yield f"whether this is a whole program: {why}, and the source has none"
+        yield f"{WHOLE_FILE}: {why}, and the source has none"
 
 
 def _budget(plan: Plan, found: Findings) -> dict[str, object]:

@@ -91,9 +91,9 @@ class EntrySpec:
     modes: Annotated[str, Option("codes in force where it is called, such as G91 G21 G94")] = ""
     start: Annotated[Coordinates, Option("where the axes are then")] = field(default_factory=dict)
     feed: Annotated[float | None, Option("the feed then, in units per minute", above=0.0)] = None
-    parameters: Annotated[ParameterValues, Option("values of parameters then")] = field(
-        default_factory=dict
-    )
+    parameters: Annotated[
+        ParameterValues, Option("values of parameters then, and of its arguments")
+    ] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -14,17 +14,27 @@ class Leaving:
 
     codes  written in one block
     back   a block each
+    last   the line before which they stand, from 0, where no block ends the program; else -1
     """
 
     codes: tuple[str, ...] = ()
     back: tuple[str, ...] = ()
+    last: int = -1
+
+    def with_codes(
+        self, emitted: Emitted, window: Window, table: MeaningTable, live: int
+    ) -> Emitted:
+        """Return the text of a window with the codes before its end."""
+        if not self.codes:
+            return emitted
+        return emitted.leaving(self.codes, window, table, live, self.last)
 
     def with_back(
         self, emitted: Emitted, window: Window, table: MeaningTable, live: int
     ) -> Emitted:
         """Return the text of a window with the blocks that go back before its end."""
         for block in self.back:
-            emitted = emitted.leaving((block,), window, table, live)
+            emitted = emitted.leaving((block,), window, table, live, self.last)
         return emitted
 
 

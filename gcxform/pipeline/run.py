@@ -291,8 +291,7 @@ class Run:
         assert self.stages is not None
         emitted = self.stages.emitter.emit(one.window, one.table, one.read, one.path)
         emitted = emitted.framed(self.frame, first, last)
-        if self.leaves.codes:
-            emitted = emitted.leaving(self.leaves.codes, one.window, one.table, one.read.live)
+        emitted = self.leaves.with_codes(emitted, one.window, one.table, one.read.live)
         if self.heads is None:
             return emitted
         text, kept = self.heads.edit(emitted.text)

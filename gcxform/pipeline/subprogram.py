@@ -10,20 +10,26 @@ one that takes off errors what goes in rapids to points of the machine alone, wh
 that. Errors are those of a place: all else is for the run of the program that calls it, or
 `[entry]` says where the axes stand and in which modes. Then it begins and ends at commands that its
 caller gives and expects (`at_call.py`).
+
+The values that a call gives are parameters of `[entry]`. A file of O-words of whose call something
+is said is read as the program that its one subprogram is (`gcxform/flow/oword_body.py`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import field, replace
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location, Severity
 from gcxform.dialect.dialect import Dialect
+from gcxform.flow.arguments import asked
 from gcxform.flow.detection import aliases
 from gcxform.flow.lookup import Folders
+from gcxform.flow.oword_body import Body, body_of
 from gcxform.flow.straightened import located
 from gcxform.flow.subprogram_file import Still
 from gcxform.flow.uncalled_subprograms import HINT
@@ -32,13 +38,14 @@ from gcxform.modal.reader import windows_of
 from gcxform.modal.state import Entry, State
 from gcxform.pipeline.at_call import FROM_THE_START, check_left, going_back, led_in
 from gcxform.pipeline.certificate import Certificate
-from gcxform.pipeline.certify import certificate
+from gcxform.pipeline.certify import WHOLE_FILE, certificate
 from gcxform.pipeline.chain import compensates
 from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
-from gcxform.syntax.source import Source
+from gcxform.stamps.comment import sealed_anew
+from gcxform.syntax.source import Source, lines_in
 from gcxform.values import dataclass
 
 USES = {
@@ -54,11 +61,15 @@ STATED_AGAIN = ("units", "plane", "distance", "feed-mode", "arc-distance")
 LAST_OF_TEXT = "GX2"
 HINT_OF_PLACES = (
     f'{HINT}; or say how it is called: modes = "G91 G21 G94 G17 G54 G49" in [entry], with the '
-    "codes in force there, and by its start where the axes stand, if that is one place"
+    "codes in force there, by its start where the axes stand, if that is one place, and by its "
+    "parameters what the call gives"
 )
 AT_ONE_PLACE = (
     "its caller is not compensated, and has none of G41, G52, G68, G92 or a scale in force; where "
     "it is called from another place, the error of this one is taken off"
+)
+FOR_THIS_CALL = (
+    "what is written is for a call with these values of parameters: with others it may go elsewhere"
 )
 
 
@@ -91,10 +102,10 @@ def run_subprogram(
     elif changes and plan.reading.entry == Entry():
         done = _the_same(plan, source, again, held)
     elif changes:
-        done = _entered(plan, source, again, held)
+        done = _called(plan, source, again, held)
     else:
         try:
-            done = _entered(plan, source, again, held)
+            done = _called(plan, source, again, held)
         except InputError as why:
             if plan.source is not plan.target or why.diagnostics[0].code < LAST_OF_TEXT:
                 raise
@@ -149,22 +160,46 @@ def _still_but_for(plan: Plan, source: Source) -> list[str] | None:
 
 def _entered(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
     """Transform a subprogram from the state of its call. Raises InputError where that is open."""
-    plan = at_entry(plan)
+    plan, body = at_entry(plan), source
     source = _led(plan, source, verify)
     run, _ = _done(plan, source, verify, Held())
+    last = _last_line(run, body) if isinstance(body, Body) else -1
     codes = _left_otherwise(run)
     back = going_back(run) if plan.marks(source).changes else ()
     if codes or back:
         _refuse_moving_returns(run)
-    run, out = _done(plan, source, verify, held, Leaving(codes, back))
+    run, out = _done(plan, source, verify, held, Leaving(codes, back, last))
     if codes and _left_otherwise(run):
         raise _open("the modes that it leaves cannot be restored", Location(source.name))
     found = certificate(run, out)
     said = " ".join(_said(plan)) or "nothing is given"
     found.assumed.append(f"this is a subprogram, and is entered in a state of which {said}")
+    if plan.reading.parameters:
+        found.assumed.append(FOR_THIS_CALL)
     if plan.marks(source).changes:
         check_left(b"".join(held.parts), run)
         found.assumed.append(AT_ONE_PLACE)
+    return found
+
+
+def _called(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
+    """Transform a subprogram of O-words, for a call that says its arguments, if one is said."""
+    if plan.source.flow_rule.language != "o-words" or plan.reading.entry == Entry():
+        try:
+            return _entered(plan, source, verify, held)
+        except InputError as why:
+            asked(why, source, plan.source, at_entry(plan).reading.parameters)
+            raise
+    body, inside = body_of(source, plan.source), Held()
+    if plan.text_passes:
+        raise body.refusal("its text is changed in a run of its own", body.first)
+    body.refuse_unsaid(plan.source, at_entry(plan).reading.parameters)
+    found = _entered(plan, body, verify, inside)
+    found.not_checked = [each for each in found.not_checked if not each.startswith(WHOLE_FILE)]
+    text = sealed_anew(body.whole(b"".join(inside.parts)))
+    held.parts, held.lines = [text], [*inside.lines, *range(body.last + 1, len(body.lines))]
+    for side, whole in ((found.source, b"".join(body.lines)), (found.output, text)):
+        side |= {"lines": lines_in(whole), "sha256": sha256(whole).hexdigest()}
     return found
 
 
@@ -251,7 +286,7 @@ def _run_of_text(plan: Plan, source: Source, verify: str, held: Held) -> tuple[R
 
 def _refuse_unknown(run: Run, plan: Plan) -> None:
     """Raise InputError for a block that depends on a mode that nobody has said."""
-    said = {plan.source.codes[code].group for code in plan.reading.entry.modes}
+    said = _groups_said(plan)
     uses_of = USES | (OF_PLACES if plan.marks(run.given).changes else {})
     for window, reader in windows_of(run.source, run.dialect):
         table = reader.table
@@ -277,6 +312,11 @@ def _refuse_unknown(run: Run, plan: Plan) -> None:
             raise located(_open(message, where), run.source)
 
 
+def _groups_said(plan: Plan) -> set[str]:
+    """Return the modal groups of which [entry] says the code in force."""
+    return {plan.source.codes[code].group for code in plan.reading.entry.modes}
+
+
 def _left_otherwise(run: Run) -> tuple[str, ...]:
     """Return the codes of modes in which the output leaves its caller, and the source does not.
 
@@ -298,6 +338,24 @@ def _left_otherwise(run: Run) -> tuple[str, ...]:
 def _same_feed(one: State, other: State) -> bool:
     values = one.feed * one.feed_unit, other.feed * other.feed_unit
     return bool(np.isclose(*values, rtol=1e-9, atol=0.0, equal_nan=True))
+
+
+def _last_line(run: Run, body: Body) -> int:
+    """Return the line, of those that are executed, at which a subprogram of O-words returns.
+
+    Raises InputError if it does not, or would call what is written.
+    """
+    body.refuse_called(run.files)
+    body.refuse_asking(run.files, _groups_said(run.plan))
+    count = 0
+    for window, reader in windows_of(run.source, run.dialect):
+        reader.table.update()
+        ends = reader.table.flag("ends", window.shape)
+        if ends.any():
+            line = run.source.line_of(window.first_line + int(np.argmax(ends)) + 1)
+            raise body.refusal("called so, it ends the program and does not return", line - 1)
+        count += len(window)
+    return count - 1
 
 
 def _refuse_moving_returns(run: Run) -> None:
