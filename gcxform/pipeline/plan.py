@@ -56,6 +56,7 @@ from gcxform.values import dataclass
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
+ENTERED = (*GROUPS, "retract")
 STRUCTURES = ("keep", "written-out")
 WORDS = ("changed", "programmed", "all")
 
@@ -164,7 +165,8 @@ class Plan:
         groups: set[str] = set()
         for mode in self.reading.entry.modes:
             code = self.source.codes.get(mode)
-            if code is None or (code.group not in GROUPS and mode != "G49") or code.group in groups:
+            known = code is not None and (code.group in ENTERED or mode == "G49")
+            if code is None or not known or code.group in groups:
                 message = f"modes: {mode!r} is no mode of {self.source.name}, or one of two"
                 raise UsageError.one("GX707", message, hint='modes = "G90 G21 G94" in [entry]')
             groups.add(code.group)

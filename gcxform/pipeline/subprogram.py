@@ -33,7 +33,7 @@ from gcxform.flow.oword_body import Body, body_of
 from gcxform.flow.straightened import located
 from gcxform.flow.subprogram_file import Still
 from gcxform.flow.uncalled_subprograms import HINT
-from gcxform.modal.meaning.tables import COLUMNS, GROUPS, code_of
+from gcxform.modal.meaning.tables import COLUMNS, GROUPS, NUMBER, MeaningTable, code_of
 from gcxform.modal.reader import windows_of
 from gcxform.modal.state import Entry, State
 from gcxform.pipeline.at_call import FROM_THE_START, check_left, going_back, led_in
@@ -45,7 +45,9 @@ from gcxform.pipeline.output import Output, Sink
 from gcxform.pipeline.plan import Plan
 from gcxform.pipeline.run import Progress, Run
 from gcxform.stamps.comment import sealed_anew
+from gcxform.syntax.scan import Window
 from gcxform.syntax.source import Source, lines_in
+from gcxform.system.arrays import Flags
 from gcxform.values import dataclass
 
 USES = {
@@ -53,8 +55,11 @@ USES = {
     "distance": "XYZABCUVW",
     "feed-mode": "F",
     "plane": "IJKR",
+    "retract": "ZR",
 }
 """The modal groups on which a block depends that has one of these addresses."""
+CENTRES = {"arc-distance": "IJK"}
+"""That of centres, where a control has more than one way."""
 OF_PLACES = {"frame": "XYZABCUVW", "tool-length": "XYZUVW"}
 """Those on which it depends besides where an axis is in the machine."""
 STATED_AGAIN = ("units", "plane", "distance", "feed-mode", "arc-distance")
@@ -68,6 +73,7 @@ AT_ONE_PLACE = (
     "its caller is not compensated, and has none of G41, G52, G68, G92 or a scale in force; where "
     "it is called from another place, the error of this one is taken off"
 )
+RADII = "its caller has G8 in force, by which X counts radii"
 FOR_THIS_CALL = (
     "what is written is for a call with these values of parameters: with others it may go elsewhere"
 )
@@ -195,6 +201,7 @@ def _called(plan: Plan, source: Source, verify: str, held: Held) -> Certificate:
         raise body.refusal("its text is changed in a run of its own", body.first)
     body.refuse_unsaid(plan.source, at_entry(plan).reading.parameters)
     found = _entered(plan, body, verify, inside)
+    found.assumed.append(RADII)
     found.not_checked = [each for each in found.not_checked if not each.startswith(WHOLE_FILE)]
     text = sealed_anew(body.whole(b"".join(inside.parts)))
     held.parts, held.lines = [text], [*inside.lines, *range(body.last + 1, len(body.lines))]
@@ -247,7 +254,11 @@ def _begun(dialect: type[Dialect], modes: tuple[str, ...]) -> type[Dialect]:
     """Return a dialect whose programs begin in modes, and otherwise in its own."""
     groups = {dialect.codes[code].group: code for code in modes}
     rule = replace(dialect.program_rule, unit_is_set=False)  # its caller sets it
-    begun = {"initial": {**dialect.initial, **groups}, "program_rule": rule}
+    retract, cycles = groups.pop("retract", ""), dialect.cycle_rule
+    if retract and cycles is not None:
+        cycles = replace(cycles, initial_level=retract == "G98")
+    initial = {**dialect.initial, **groups}
+    begun = {"initial": initial, "program_rule": rule, "cycle_rule": cycles}
     return type(dialect.__name__, (dialect,), begun)
 
 
@@ -287,7 +298,8 @@ def _run_of_text(plan: Plan, source: Source, verify: str, held: Held) -> tuple[R
 def _refuse_unknown(run: Run, plan: Plan) -> None:
     """Raise InputError for a block that depends on a mode that nobody has said."""
     said = _groups_said(plan)
-    uses_of = USES | (OF_PLACES if plan.marks(run.given).changes else {})
+    uses_of = USES | (CENTRES if "G90.1" in plan.source.codes else {})
+    uses_of |= OF_PLACES if plan.marks(run.given).changes else {}
     for window, reader in windows_of(run.source, run.dialect):
         table = reader.table
         table.update()
@@ -298,6 +310,8 @@ def _refuse_unknown(run: Run, plan: Plan) -> None:
             stated = table.groups[window.shape, COLUMNS.index(group)] >= 0
             columns = [ord(letter) - ord("A") for letter in letters]
             uses = (table.slots[window.shape][:, columns] >= 0).any(axis=1)
+            if group == "retract":
+                uses &= _drills(table, window, run.dialect)
             uses &= ~np.logical_or.accumulate(stated)
             if uses.any():
                 found[group] = int(np.argmax(uses))
@@ -310,6 +324,14 @@ def _refuse_unknown(run: Run, plan: Plan) -> None:
             where = replace(where, text=text, width=max(1, len(text)))
             message = f"its {' and '.join(found)} are those of its caller"
             raise located(_open(message, where), run.source)
+
+
+def _drills(table: MeaningTable, window: Window, dialect: type[Dialect]) -> Flags:
+    """Return of each line whether it begins a canned cycle, in whichever group that is."""
+    rule = dialect.cycle_rule
+    codes = [NUMBER[f"G{number}"] for number in rule.cycles] if rule is not None else []
+    columns = [COLUMNS.index(group) for group in ("motion", "cycle")]
+    return np.asarray(np.isin(table.groups[window.shape][:, columns], codes).any(axis=1))
 
 
 def _groups_said(plan: Plan) -> set[str]:

@@ -179,6 +179,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[flow/alone-arguments]",
     ),
     _flow(
+        "the level between holes is that of a reset where a caller says it",
+        "gcxform/pipeline/subprogram.py",
+        'cycles = replace(cycles, initial_level=retract == "G98")',
+        "pass",
+        "tests/test_corpus.py::test_case[flow/alone-level-of-caller]",
+    ),
+    _flow(
         "for which call a subprogram is written is not said",
         "gcxform/pipeline/subprogram.py",
         "if plan.reading.parameters:",
