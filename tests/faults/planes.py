@@ -304,22 +304,22 @@ MUTATIONS = (
     Mutation(
         "swivels: turns are about axes that stand",
         SWIVELS,
-        "turned = turned @ _turn(axis, float(angle))",
-        "turned = _turn(axis, float(angle)) @ turned",
+        "frame @= about(axis, angle)",
+        "frame = about(axis, angle) @ frame",
         SWIVELLED,
     ),
     Mutation(
         "swivels: what shifts behind the turns shifts before them",
         SWIVELS,
-        "+ turned @ [float(value) for value in behind]",
-        "+ np.array([float(value) for value in behind])",
+        "zero = frame.point(behind)",
+        "zero = Frame(shift=frame.shift).point(behind)",
         SWIVELLED,
     ),
     Mutation(
         "swivels: the first angle of Euler is half a turn off",
         SWIVELS,
-        "math.atan2(turned[0, 2], -turned[1, 2])",
-        "math.atan2(-turned[0, 2], turned[1, 2])",
+        "math.atan2(rows[0][2], -rows[1][2])",
+        "math.atan2(-rows[0][2], rows[1][2])",
         SWIVELLED,
     ),
     Mutation(

@@ -10,6 +10,7 @@ from gcxform_plugins.dialects.fagor import tables as tables
 from gcxform_plugins.dialects.fagor.places import Places, code_of
 from gcxform_plugins.dialects.shared.own_functions import INERT, OF_BUILDER
 from gcxform_plugins.dialects.shared.tips_left import goes_along
+from gcxform_plugins.dialects.shared.ways import IN_SPINDLE
 
 PLANES = frozenset({"G17", "G18", "G19"})
 NO_EDGE = "which D is in force after a tool change that names none is the control's choice"
@@ -332,7 +333,7 @@ class Blocks(gx.Translator):
             return "G49"
         if self.in_spindle in ("", "0"):
             what = "D is about the tool in the spindle, and which that is is not known"
-            self.refuse(what, item, NO_TOOL if self.in_spindle else tables.IN_SPINDLE)
+            self.refuse(what, item, NO_TOOL if self.in_spindle else IN_SPINDLE)
         return f"G43 H{self.in_spindle}"
 
     # --- statements ---

@@ -24,7 +24,6 @@ CODES = PLAIN | UNSAID | WORK | COMP | {*OTHER, "G4", "G6", "G90", "G91", "G159"
 M_CODES = frozenset(f"M{code}" for code in (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30))
 OF_BLOCKS = frozenset(("M128", "M129", "M9000", "M9001"))
 """M codes that say among the blocks what a Fagor has other words for."""
-IN_SPINDLE = "write T and M6 before; or say tool = 1 in [input], if it is tool 1"
 ALONE = "write it in a block of its own"
 TOLD = "tell the axis absolute before"
 WORDS = PLAIN_WORDS | {"T", "D"}

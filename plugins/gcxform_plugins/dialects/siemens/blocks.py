@@ -12,6 +12,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.shared.ways import IN_SPINDLE
 from gcxform_plugins.dialects.siemens.asides import AROUND, ENTRIES, KONT, named
 from gcxform_plugins.dialects.siemens.axes_of_lines import OTHER
 from gcxform_plugins.dialects.siemens.contours import Contours
@@ -20,7 +21,7 @@ from gcxform_plugins.dialects.siemens.frames import Frame
 from gcxform_plugins.dialects.siemens.framing import rounded
 from gcxform_plugins.dialects.siemens.going_along import UNITS
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, FRAMES, NOBODYS, STEP, Line
-from gcxform_plugins.dialects.siemens.moves import IN_SPINDLE, OF_WHICH, rest_of
+from gcxform_plugins.dialects.siemens.moves import OF_WHICH, rest_of
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY, PlaceError, text_of
 from gcxform_plugins.dialects.siemens.tapping import CODE, LINES, SPOS, Tap, tap_at, turned
 

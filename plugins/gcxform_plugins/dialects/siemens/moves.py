@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 import gcxform as gx
+from gcxform_plugins.dialects.shared.ways import IN_SPINDLE
 from gcxform_plugins.dialects.siemens import arcs as arcs
 from gcxform_plugins.dialects.siemens.cycle_calls import CycleCalls
 from gcxform_plugins.dialects.siemens.line import ABSOLUTE, NOBODYS, STEP, Line
@@ -16,7 +17,6 @@ EDGE = (
     "say D1 before; or edge-after-tool-change = 1 in [control] of the machine file, or 0, as it is"
 )
 OF_WHICH = "D1 of the tool in the spindle, and which that is is not known"
-IN_SPINDLE = "write T and M6 before; or say tool = 1 in [input], if it is tool 1"
 ALONG = 'move in G17; or say tool-length-axis = "Z" in [control], if it stays there (SD42940)'
 START = (
     "write G1 in this block, or G0 if the way is clear; or say "

@@ -17,11 +17,9 @@ import math
 from collections.abc import Sequence
 from decimal import Decimal
 
-import numpy as np
-
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.cycles import NO_RETRACT, CycleError
-from gcxform_plugins.dialects.siemens.frames import Frame
+from gcxform_plugins.dialects.siemens.frames import Frame, about
 from gcxform_plugins.dialects.siemens.line import Line
 from gcxform_plugins.dialects.siemens.place import LINEAR, ROTARY
 from gcxform_plugins.dialects.siemens.reading import Statements
@@ -55,13 +53,13 @@ def plane_of(given: Sequence[str]) -> tuple[list[str], str]:
     before, angles, behind, way = numbers[:3], numbers[3:6], numbers[6:9], numbers[9]
     if way not in (-1, 0, 1):
         raise CycleError("_DIR is not -1, 0 or 1")
-    turned = np.eye(3)
+    frame = Frame(shift=(before[0], before[1], before[2]))
     for axis, angle in zip(ORDERS[values[3]], angles, strict=True):
-        turned = turned @ _turn(axis, float(angle))
-    zero = [float(value) for value in before] + turned @ [float(value) for value in behind]
-    words = zip("XYZIJK", (*zero.tolist(), *_euler(turned)), strict=True)
-    numbers_said = [f"{letter}{Decimal(repr(value)):f}" for letter, value in words]
-    return [PLANE, *numbers_said], f"{TURN} P{int(way)}"
+        frame @= about(axis, angle)
+    zero = frame.point(behind)
+    words = zip("XYZIJK", (*map(float, zero), *_euler(frame)), strict=True)
+    said = [f"{letter}{Decimal(repr(value)):f}" for letter, value in words]
+    return [PLANE, *said], f"{TURN} P{int(way)}"
 
 
 def _number(text: str) -> Decimal:
@@ -70,26 +68,15 @@ def _number(text: str) -> Decimal:
     return Decimal(text or "0")
 
 
-def _turn(axis: str, angle: float) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """Return the turn (3, 3) about an axis, degrees; exact at right angles."""
-    quarter = {0.0: (1.0, 0.0), 90.0: (0.0, 1.0), 180.0: (-1.0, 0.0), 270.0: (0.0, -1.0)}
-    radians = math.radians(angle)
-    c, s = quarter.get(angle % 360.0, (math.cos(radians), math.sin(radians)))
-    k = "XYZ".index(axis)
-    i, j = (k + 1) % 3, (k + 2) % 3
-    made = np.eye(3)
-    made[i, i], made[i, j], made[j, i], made[j, j] = c, -s, s, c
-    return made
-
-
-def _euler(turned: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> tuple[float, ...]:
-    """Return the angles about Z, X', Z'' of a turn (3, 3), degrees, the second from 0 to 180."""
-    tilt = math.atan2(math.hypot(turned[0, 2], turned[1, 2]), turned[2, 2])
-    if turned[0, 2] == turned[1, 2] == 0.0:
-        first, last = 0.0, math.atan2(turned[1, 0], turned[0, 0])
+def _euler(frame: Frame) -> tuple[float, ...]:
+    """Return the angles about Z, X', Z'' of a frame, degrees, the second from 0 to 180."""
+    rows = [[float(value) for value in row] for row in frame.matrix]
+    tilt = math.atan2(math.hypot(rows[0][2], rows[1][2]), rows[2][2])
+    if rows[0][2] == rows[1][2] == 0.0:
+        first, last = 0.0, math.atan2(rows[1][0], rows[0][0])
     else:
-        first = math.atan2(turned[0, 2], -turned[1, 2])
-        last = math.atan2(turned[2, 0], turned[2, 1])
+        first = math.atan2(rows[0][2], -rows[1][2])
+        last = math.atan2(rows[2][0], rows[2][1])
     return tuple(math.degrees(angle) for angle in (first, tilt, last))
 
 
@@ -106,15 +93,13 @@ class Swivelling(Statements):
 
     def take_swivel(self, line: Line, item: gx.Item, given: Sequence[str]) -> None:
         """Take a plane, or its end. Raises InputError."""
-        stays = self.reading.asides and not self.reading.turns_plainly
-        ends = given[1:2] == [f'"{ENDS}"']
-        reading = self.reading
+        reading, ends = self.reading, given[1:2] == [f'"{ENDS}"']
         goes = reading.crosses and not reading.asides if ends else reading.turns_plainly
         moves = given[0] not in NO_WAY or given[2:3] == [WITH_TIP]
         if moves and goes:
             self.refuse(WAY, item, AWAY)
         if ends:
-            line.asides += [self.text_of(item)] * self.reading.asides
+            line.asides += [self.text_of(item)] * reading.asides
             if moves:
                 self._lose_all()
             return
@@ -125,6 +110,7 @@ class Swivelling(Statements):
         apart = self.following or self.comp or self.drilling is not None or self.plane != "XY"
         if apart or self.frame != Frame():
             self.refuse(APART, item, ALONE)
+        stays = reading.asides and not reading.turns_plainly
         said = gx.Speller.aside(self.text_of(item)) if stays else ""
         line.ahead += [" ".join(["G90", *plane, said]).rstrip(), f"G0 {attitude}"]
         self.said, self.said_steps, self.swivelled = "", False, True
