@@ -152,12 +152,22 @@ class Copying:
             where = self.task.location(int(self.path.block[row]))
             message = f"the block would be written anew, and where {axis} goes is not known"
             hint = f"program {axis} before, or give a machine file with X = ... in [work-offset.*]"
+            if self._was_turned(row):
+                hint = "name X, Y and Z in this block, where coordinates are turned"
             texts = [u for u in self.task.read.unknown if u.line == self.path.block[row]]
             if texts:
                 hint = f"write {axis} as a number, or leave out the pass that changes this block"
             if texts and all(each.rounded for each in texts):
                 hint = hint_of_rounding(axis, bool(self.path.blocks.inch[self.path.block[row]]))
             raise InputError.one("GX506", message, where, hint)
+
+    def _was_turned(self, row: int) -> bool:
+        """Return whether words of X, Y and Z each go along more than one axis in the source."""
+        rows = np.flatnonzero(self.original.block == self.path.block[row])
+        return any(
+            self.original.frames[frame].matrix is not None
+            for frame in self.original.frame[rows].tolist()
+        )
 
     def _refuse_perhaps(self, stated: Stated, pieces: Pieces) -> None:
         """Refuse to change more than words in a block that may not be executed.

@@ -145,7 +145,7 @@ MUTATIONS = (
         "gcxform/modal/frames/track.py",
         "4 if plane is None or plane.angles else SPATIAL",
         "4",
-        case("length-across"),
+        case("length-x-alone"),
     ),
     Mutation(
         "planes: Z stands where another length would move it to in one",
@@ -166,7 +166,7 @@ MUTATIONS = (
         "plugins/gcxform_plugins/passes/offsets.py",
         "bool(mixes) for mixes",
         "False for mixes",
-        case("length-across"),
+        case("length-x-alone"),
     ),
     Mutation(
         "planes: the axes do not turn where their code is not written",
