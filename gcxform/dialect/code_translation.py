@@ -62,7 +62,8 @@ class Saying:
     """From one control to another; `m_codes` and `drop` are what the user says of codes.
 
     `tips` are codes that follow a tip, where another control gets words of the axes instead, each
-    with the one that is left of it: it only takes the length of the tool.
+    with the one that is left of it: it only takes the length of the tool. `taps_alike`: the user
+    says that both tie the spindle to the feed in the same way.
     """
 
     source: type[Dialect]
@@ -70,6 +71,7 @@ class Saying:
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
     tips: Mapping[str, str] = field(default_factory=dict)
+    taps_alike: bool = False
     _known: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     @property

@@ -14,7 +14,7 @@ from gcxform.catalogue.remedies import put_before
 from gcxform.dialect.code_translation import FOLLOW, HOME, MACHINE
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
-from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m
+from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m, same_tap
 from gcxform.emit.fields import Key, Role
 from gcxform.emit.manner import Manner
 from gcxform.emit.own_blocks import apart, m_codes_of, over_hole
@@ -35,6 +35,10 @@ BY_TAP: Final = (
 )
 THE_LAST: Final = "write H in this block, with the number of the last H before it"
 THE_TOOLS: Final = "write H in this block, with the number of the tool in the spindle"
+IF_ALIKE: Final = (
+    'taps = "alike" in [output] if the spindle turns in step with the feed on both controls, or '
+    "a floating chuck makes up for it on both; else let the CAM write the tap for this control"
+)
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
 IN_STEP: Final = "G33.1"
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
@@ -101,7 +105,8 @@ class CodeWords:
         if said != name:
             text = like(text, said)
         elif self.source is not self.target and code and not self.saying.agrees(name):
-            what = other_in(self.source, self.target, name, code, self.meaning, asked)
+            alike = self.saying.taps_alike
+            what = other_in(self.source, self.target, name, code, self.meaning, asked, alike)
             if what:
                 self._refuse(word, name, what)
         self.draft.literal(lead, text)
@@ -127,7 +132,8 @@ class CodeWords:
         rule = self.source.cycle_rule
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name in TAPPING or name == IN_STEP:
-            self.draft.refuse(word, what, BY_TAP)
+            same = name in TAPPING and same_tap(self.source, self.target, name, self.meaning)
+            self.draft.refuse(word, what, IF_ALIKE if same else BY_TAP)
         if name not in EXPANDED or cycle is None or cycle.refused:
             self.draft.refuse(word, what)
         if name in self.target.codes:

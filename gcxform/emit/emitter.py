@@ -17,6 +17,7 @@ import numpy as np
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
 from gcxform.dialect.code_translation import HOME
+from gcxform.dialect.cycle_rule import TAPPING
 from gcxform.emit.bored_places import led_behind
 from gcxform.emit.centres import Centres
 from gcxform.emit.codewords import WAY_HOME
@@ -42,7 +43,7 @@ from gcxform.syntax.scan import Window
 from gcxform.syntax.source import line_end
 from gcxform.syntax.tree import Comment, Item
 from gcxform.system.arrays import Flags, Floats, Ints
-from gcxform.system.distinct import distinct
+from gcxform.system.distinct import distinct, one_of
 from gcxform.toolpath.path import FeedMode, Form, Kind, Toolpath
 from gcxform.values import dataclass
 
@@ -144,6 +145,7 @@ class _Job:
         self._refuse_lost()
         self._refuse_behind_end()
         self._refuse_dwells()
+        self._taps_alike()
         self._refuse_ways_home()
         refuse_other_zeros(self.task)
         centre = Centres(self.task, self.stated.kind, self.positions, self.copying).write()
@@ -288,8 +290,19 @@ class _Job:
                 message = (
                     f"{target.name} would wait {wait * now:g} s here, and not {wait * was:g} s"
                 )
-                hint = put_before("cycles")
+                taps = task.read.modes.cycle[line] in TAPPING
+                hint = "let the CAM write the time for this control"
+                hint = hint if taps else put_before("cycles")
                 raise InputError.one("GX501", message, task.location(line), hint)
+
+    def _taps_alike(self) -> None:
+        """Note that a tap is one there for only the user says so."""
+        manner = self.task.manner
+        tied = self.path.block[self.path.form == Form.SYNCHRONISED]
+        cycles = one_of(self.task.read.modes.cycle[tied], sorted(TAPPING))
+        if manner.crossing and manner.saying.taps_alike and cycles.any():
+            said = f"in G74 and G84 the spindle turns on {manner.target.name} as it does on "
+            self.emitter.assumed[said + manner.source.name] = None
 
     def _refuse_open_waits(self) -> None:
         """Refuse dwells of which a setting of the source says how long they are."""

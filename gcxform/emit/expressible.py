@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -234,6 +235,7 @@ def other_in(
     code: Code,
     meaning: Meaning,
     asked: str = "",
+    taps_alike: bool = False,
 ) -> str:
     """Return what the target cannot say, if a G code means something else there, or nothing.
 
@@ -254,11 +256,21 @@ def other_in(
     sides = code.group == "cutter-comp" and "D" in code.takes and "D" not in meaning.slots
     if sides and stored[0] != stored[1]:  # the tool in the spindle, or the D in force
         return f"{name} without D"
-    if name in TAPPING:
+    if name in TAPPING and not (taps_alike and same_tap(source, target, name, meaning)):
         return f"{name} with the spindle tied to the feed in the same way"
     if code.act == "local" and source.offset_rule.g52_is_g92 != target.offset_rule.g52_is_g92:
         return f"{name} without changing what G92 has set"
     return ""
+
+
+def same_tap(source: type[Dialect], target: type[Dialect], name: str, meaning: Meaning) -> bool:
+    """Whether a tapping cycle has the same moves, and the words of its block say the same."""
+    rules, number = (source.cycle_rule, target.cycle_rule), int(name[1:])
+    one, other = (rule.cycles.get(number) if rule else None for rule in rules)
+    if one is None or other is None or replace(one, takes="") != replace(other, takes=""):
+        return False
+    waits = source.point_rule.dwell.get("P") == target.point_rule.dwell.get("P")
+    return meaning.slots.keys().isdisjoint({*one.takes} ^ {*other.takes} | set("P" * (not waits)))
 
 
 def _what(code: Code) -> tuple[str, Effect, str]:

@@ -119,6 +119,9 @@ class OutputSpec:
     inert: Annotated[
         CodeList, Option("M codes of the control written for that leave its axes where they stand")
     ] = ()
+    taps: Annotated[
+        Literal["", "alike"], Option("what the spindle does in G74 and G84 of another control")
+    ] = ""
 
 
 @dataclass(frozen=True)

@@ -133,6 +133,7 @@ class Pipeline(Plan):
             m_codes=spec.output.m_codes,
             drop=frozenset(spec.output.drop),
             inert=frozenset(spec.output.inert),
+            taps=spec.output.taps,
         )
 
     # --- runs ---

@@ -78,6 +78,7 @@ class Plan:
     m_codes  M codes of the source, and what takes the place of each in the output
     drop     codes of the source that are left out
     inert    M codes of the target that leave its axes where they stand
+    taps     "alike": both controls tie the spindle to the feed in the same way in G74 and G84
     whole    why a program in a language of its own is not written back line by line; nothing
              where it is
     chord_error  mm within which splines become lines without a step; 0: they stay
@@ -104,6 +105,7 @@ class Plan:
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
     inert: frozenset[str] = frozenset()
+    taps: str = ""
     chord_error: float = 0.0
     whole: str = ""
 
@@ -322,7 +324,8 @@ class Plan:
         """How the target says what codes of the source do."""
         folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
         tips = self.source.tip_rule.codes if folds and self.source is not self.target else {}
-        return Saying(self.source, self.target, self.m_codes, self.drop, tips)
+        alike = self.taps == "alike"
+        return Saying(self.source, self.target, self.m_codes, self.drop, tips, alike)
 
     @property
     def copies(self) -> bool:

@@ -216,6 +216,27 @@ MUTATIONS = (
         HERE,
     ),
     Mutation(
+        "saying: taps are alike whatever their moves",
+        "gcxform/emit/expressible.py",
+        'replace(one, takes="") != replace(other, takes="")',
+        "False",
+        "tests/test_corpus.py::test_case[dialects/across/taps-otherwise]",
+    ),
+    Mutation(
+        "saying: taps are alike where nobody says so",
+        "gcxform/emit/expressible.py",
+        "not (taps_alike and same_tap(",
+        "not (same_tap(",
+        "tests/test_corpus.py::test_case[dialects/across/taps-not-said]",
+    ),
+    Mutation(
+        "saying: that taps are alike is not said in the certificate",
+        "gcxform/emit/emitter.py",
+        "manner.saying.taps_alike and cycles.any()",
+        "manner.saying.taps_alike and False",
+        "tests/test_corpus.py::test_case[dialects/across/taps-alike]",
+    ),
+    Mutation(
         "saying: a cycle that is another one stays",
         "gcxform/emit/expressible.py",
         'if source.codes.get(f"G{number}") != target.codes.get(f"G{number}")',
