@@ -8,6 +8,7 @@ import gc
 import itertools
 import os
 from pathlib import Path
+from zlib import crc32
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # processes have the processors; before numpy
 
@@ -28,12 +29,36 @@ settings.register_profile(  # that it fails is enough: the least example is not 
 settings.register_profile("long", max_examples=20_000, deadline=None, suppress_health_check=SLOW)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
 
+BY_TURNS = "by_turns"  # the mark of a test with hundreds of cases that others mostly cover
 COUNT = itertools.count()  # of folders of tests
 GARBAGE = (
     20_000,
     20,
     20,
 )  # objects made before garbage is looked for; Python's own are 700, 10, 10
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add `--turn N/M`: the Nth of M shares of the cases of tests that are marked `by_turns`."""
+    parser.addoption("--turn", default="0/1", help="N/M: a share of the cases of dear tests")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the cases whose turn it is not, by their names: every process leaves out the same.
+
+    Tests without cases are always run.
+    """
+    turn, shares = map(int, config.getoption("turn").split("/"))
+    left = {
+        item
+        for item in items
+        if item.get_closest_marker(BY_TURNS)
+        and (crc32(item.name.encode()) - turn) % shares
+        and "[" in item.name
+    }
+    if left:
+        config.hook.pytest_deselected(items=[*left])
+        items[:] = [item for item in items if item not in left]
 
 
 def pytest_collection_finish() -> None:

@@ -1,6 +1,6 @@
 """Do the tests see a wrong gcxform? Each mutation is a small fault; a test must fail on it.
 
-    python tests/mutations.py [--jobs N] [--shares 1] [--remember] [NAME ...]
+    python tests/mutations.py [--jobs N] [--shares 1] [--since REV] [--remember] [NAME ...]
 
 The packages are copied to temporary directories, as many as run at a time. A fault is written into
 a copy, and the tests of the fault run on it until one fails. A fault that no test notices survives;
@@ -13,6 +13,8 @@ A fault is tried first in a copy of a process that has loaded gcxform, in which 
 functions is replaced (`swapping.py`); commands that a test starts find it in the copied packages.
 Where that cannot be done, or nothing fails, the copied packages are loaded anew.
 
+With `--since` faults in files that differ from a commit are tried, and those that are noticed by
+tests and cases that differ: a case that is changed may notice no more what it was written for.
 Of `--shares` each commit has the next one to run: so many commits run all faults.
 
 `--remember` writes into `tests/faults/noticed.txt` which test noticed, where that took long. Next
@@ -328,10 +330,15 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description="Do the tests see a wrong gcxform?")
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
     parser.add_argument("--shares", type=int, default=1, help="run one of so many shares")
+    parser.add_argument("--since", metavar="REV", help="those near what has changed since REV")
     parser.add_argument("--remember", action="store_true", help="write down what noticed")
     parser.add_argument("names", nargs="*", help="parts of names of mutations")
     asked = parser.parse_args(arguments)
     chosen = [m for m in MUTATIONS if not asked.names or any(n in m.name for n in asked.names)]
+    if asked.since:
+        git = ["git", "-C", str(ROOT), "diff", "--name-only", "--no-renames", asked.since]
+        paths = {*subprocess.run(git, capture_output=True, text=True, check=True).stdout.split("\n")}
+        chosen = [mutation for mutation in chosen if paths & mutation.files]
     chosen = chosen[commits() % asked.shares :: asked.shares]
     if found := problems():
         print("\n".join(found))

@@ -89,6 +89,7 @@ def agreement():
     return module
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("first", range(PARTS))
 def test_nothing_real_is_read_otherwise_than_by_linuxcnc(first, shared):
     module = agreement()

@@ -143,6 +143,7 @@ def joins(case):
     return 'use = "arcs"' in case.text("pipeline.toml")
 
 
+@pytest.mark.by_turns
 @pytest.mark.usefixtures("one_process")
 @each_case(lambda case: not case.xfail)
 def test_windows_make_no_difference(case, tmp_path, monkeypatch):
@@ -301,6 +302,7 @@ def grid(case: Case) -> float:
     return 10.0 ** -min(int(said[1]) if said else 4, MOST_DECIMALS) + 0.0051
 
 
+@pytest.mark.by_turns
 @NEEDS_RS274
 @each_case(goes)
 def test_linuxcnc_goes_the_same_way(case, tmp_path):

@@ -52,6 +52,7 @@ def test_names_are_of_one_fact():
     assert len(set(names)) == len(names)
 
 
+@pytest.mark.by_turns
 @pytest.mark.skipif(not rs274.available(), reason="rs274 is not installed")
 @pytest.mark.parametrize("fact", [*record.facts()], ids=lambda fact: fact["name"])
 def test_linuxcnc_still_says_so(fact):

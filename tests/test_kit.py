@@ -88,6 +88,7 @@ def in_parts(names):
             yield pytest.param(name, slice(nth, None, count), id=own_id)
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize(("name", "part"), [*in_parts({*passes()} - TURNING_PASSES)])
 def test_registered_passes(name, part):
     check_pass(passes()[name], *instances(name)[part])

@@ -13,6 +13,7 @@ from gcxform.plugin.registry import default_registry
 from gcxform.testing import check_dialect
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("name", sorted(default_registry().dialects))
 def test_registered_dialects(name):
     check_dialect(default_registry().dialects[name])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 PASSES = "plugins/gcxform_plugins/passes"
@@ -25,6 +26,8 @@ LIMITS = "gcxform/modal/control_limits.py"
 FACTS = "tests/test_dialect_facts.py::test_our_facts"
 READING = "tests/test_verify.py::test_the_proof_reads_as_the_control_does"
 
+CASE = re.compile(r"test_corpus\.py::\w+\[(\S+)\]")
+
 
 @dataclass(frozen=True)
 class Mutation:
@@ -35,3 +38,12 @@ class Mutation:
     old: str
     new: str
     tests: str
+
+    @property
+    def files(self) -> set[str]:
+        """The files of the fault, of the tests that notice it, and of the cases that these name.
+
+        Not the one that runs all cases: they notice what they did before, if it is changed.
+        """
+        tests = {test.partition("::")[0] for test in self.tests.split()} - {OFFSETS}
+        return {self.file, *tests, *(f"corpus/{case}.txt" for case in CASE.findall(self.tests))}

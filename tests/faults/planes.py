@@ -166,7 +166,7 @@ MUTATIONS = (
         "plugins/gcxform_plugins/passes/offsets.py",
         "bool(mixes) for mixes",
         "False for mixes",
-        case("length-x-alone"),
+        "tests/test_corpus.py::test_case[offsets/fanuc-g68-one-axis]",
     ),
     Mutation(
         "planes: the axes do not turn where their code is not written",

@@ -68,6 +68,7 @@ def test_what_was_done_is_not_done_again(tmp_path: Path, dialect: str, data: st.
         assert kit.code(pipe, after) == "GX241"
 
 
+@pytest.mark.by_turns
 @pytest.mark.parametrize("case", CHANGES, ids=lambda case: name(case.path))
 def test_a_stamp_is_all_that_is_new(case, tmp_path):
     """And LinuxCNC goes the same way with it."""
