@@ -337,7 +337,8 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = [m for m in MUTATIONS if not asked.names or any(n in m.name for n in asked.names)]
     if asked.since:
         git = ["git", "-C", str(ROOT), "diff", "--name-only", "--no-renames", asked.since]
-        paths = {*subprocess.run(git, capture_output=True, text=True, check=True).stdout.split("\n")}
+        said = subprocess.run(git, capture_output=True, text=True, check=True).stdout
+        paths = {*said.split("\n")}
         chosen = [mutation for mutation in chosen if paths & mutation.files]
     chosen = chosen[commits() % asked.shares :: asked.shares]
     if found := problems():
