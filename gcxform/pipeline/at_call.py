@@ -115,14 +115,33 @@ def check_left(text: bytes, run: Run) -> None:
     given.folder = run.given.folder
     executed = written_out(given, plan.target, plan.machine_reading, plan.target)
     again = Interpreter(plan.target, proof.reading, proof.axes, "output")
-    for window, reader in windows_of(executed, plan.target):
-        again.interpret(window, reader.table)
+    begun = Interpreter(run.dialect, proof.reading, proof.axes, run.source.name)
+    places = [_let_go(begun, run.source), _let_go(again, executed)]
     left = again.state
     gap = np.nan_to_num(np.abs(left.position - before.position))
     known = (np.isnan(left.position) == np.isnan(before.position)).all()
     other = [g for g, code in before.groups.items() if left.groups[g] != code]
     if not known or (gap > _steps(run, before)).any() or other:
         raise _refusal("its caller would find the axes or modes otherwise than they were")
+    if (np.abs(np.nan_to_num(places[0] - places[1])) > _steps(run, before)).any():
+        raise _refusal("behind it an axis is lost, and stands elsewhere than its caller would find it")
+
+
+def _let_go(reads: Interpreter, source: Source) -> Floats:
+    """Interpret a program; return where axes stood as a block lost them that did not move them.
+
+    (axes,) mm or degrees; nan for all others. An axis that goes to a point of the machine is not
+    known behind it either, and stands there whatever was written before.
+    """
+    gone = np.full(len(reads.axes), np.nan)
+    for window, reader in windows_of(source, reads.dialect):
+        path = reads.interpret(window, reader.table).path
+        stood = np.vstack([path.entry, path.end])
+        lost = np.append(path.lost, -1)  # what no move follows has lost none of its own
+        for axis in np.flatnonzero(np.isfinite(stood).any(axis=0)).tolist():
+            last = int(np.flatnonzero(np.isfinite(stood[:, axis]))[-1])
+            gone[axis] = stood[last, axis] if int(lost[last]) >> axis & 1 else np.nan
+    return np.where(np.isnan(reads.state.position), gone, np.nan)
 
 
 def _ends(run: Run) -> tuple[State, State]:
