@@ -124,7 +124,7 @@ def check_left(text: bytes, run: Run) -> None:
     if not known or (gap > _steps(run, before)).any() or other:
         raise _refusal("its caller would find the axes or modes otherwise than they were")
     if (np.abs(np.nan_to_num(places[0] - places[1])) > _steps(run, before)).any():
-        raise _refusal("behind it an axis is lost, and stands elsewhere than its caller would find it")
+        raise _refusal("behind it an axis is lost, and stands elsewhere than its caller expects")
 
 
 def _let_go(reads: Interpreter, source: Source) -> Floats:

@@ -22,12 +22,14 @@ AXIS = re.compile(
     rf"(?P<step>{STEP})?(?![ \t]*[*/]|[-+0-9.])",
     re.IGNORECASE,
 )
-STEPS = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
-ABSOLUTE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
+BEGINS = r"(?:(?<![A-Z_])|(?<=[0-9.\]]I))"
+"""Where a word may begin: also behind a number, and behind the I of X5I, without a blank."""
+STEPS = re.compile(rf"{BEGINS}G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
+ABSOLUTE = re.compile(rf"{BEGINS}G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
 RADIUS = re.compile(rf"(?<![A-Z0-9_])R[ \t]*=?[ \t]*{NUMBER}", re.IGNORECASE)
 HEAD = re.compile(r"[ \t]*/?[ \t]*(?:N[ \t]*[0-9]+[ \t]*:?)?(?:[ \t]*\[[A-Z0-9_ ]*\])*", re.I)
 COUNTS = re.compile(
-    rf"(?<![A-Z0-9_.])[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}|{STEPS.pattern}", re.IGNORECASE
+    rf"{BEGINS}[{AXES}RQ][ \t]*=?[ \t]*{VALUE}{STEP}|{STEPS.pattern}", re.IGNORECASE
 )
 """Words that count from where their axis stands, or G91."""
 STEPPED = tuple(map(re.compile, (r"91(?![0-9.])", r"I(?<=[0-9.\]]I)", r"i(?<=[0-9.\]]i)")))

@@ -22,8 +22,11 @@ AXIS = re.compile(
 )
 RADIUS = re.compile(rf"(?<![A-Z0-9_])CR[ \t]*=[ \t]*{VALUE}", re.IGNORECASE)
 WAYS = re.compile(r"(?<![A-Z0-9_])([ABC])[ \t]*=[ \t]*(?:DC|ACP|ACN)[ \t]*\(", re.IGNORECASE)
-STEPS = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*91(?![0-9.])", re.IGNORECASE)
-ABSOLUTE = re.compile(r"(?<![A-Z0-9_])G[ \t]*0*90(?![0-9.])", re.IGNORECASE)
+DISTANCE = re.compile(
+    r"[A-Z_]{2}[A-Z0-9_]*|(?P<steps>G[ \t]*0*91(?![0-9.]))|(?P<absolute>G[ \t]*0*90(?![0-9.]))",
+    re.IGNORECASE,
+)
+"""G91 and G90, also behind a number without a blank, and names, which have two letters in front."""
 NUMBER = re.compile(r"[ \t]*(?:/[0-9]?)?[ \t]*(?:[N:][ \t]*[0-9]+)?[ \t]*", re.IGNORECASE)
 
 
@@ -45,8 +48,9 @@ def spelled(line: str, blocks: Sequence[str]) -> str | None:
     if centre:
         text = RADIUS.sub(centre, text)
     if ("G", "90") in words:
-        text = STEPS.sub("G90", text)
-        if not ABSOLUTE.search(text) and "=" not in line:
+        text = DISTANCE.sub(lambda m: "G90" if m["steps"] else m[0], text)
+        said_so = any(m["absolute"] for m in DISTANCE.finditer(text))
+        if not said_so and "=" not in line:
             head = NUMBER.match(text)
             at = head.end() if head else 0
             text = f"{text[:at]}G90 {text[at:]}"
