@@ -53,6 +53,7 @@ def calls(words: list[Block], position: tuple[float, float, float], **more: obje
         "incremental": np.array([w.get("distance", 90) == 91 for w in words]),
         "initial": np.array([w.get("retract", 99) == 98 for w in words]),
         "spindle": np.array([int(w.get("spindle", 1)) for w in words]),
+        "turned": np.zeros(count, np.bool_),
         "other_axes": np.array(["A" in w for w in words]),
         "inverse": np.zeros(count, np.bool_),
         "lost": np.zeros(count, np.bool_),

@@ -24,6 +24,7 @@ from cycle_kit import (
     turned,
 )
 
+from gcxform.modal.moves.cycle_patterns import turn_axes
 from gcxform.toolpath.path import Kind
 
 # After the approach, which is `> 10, > 2` in all of them: LinuxCNC in G98, and in G99.
@@ -242,6 +243,16 @@ def test_words_of_another_distance_mode() -> None:
     assert refusals(expanded("fanuc", *blocks)) == [
         "1: G81 with R in force from before a G90 or G91"
     ]
+
+
+def test_axes_turn_on_the_way_to_the_hole() -> None:
+    block = HOLE | {"cycle": 81, "L": 2}
+    rows = cycles("linuxcnc").expand(calls([block], (0, 0, 0))).rows
+    assert rows.hole.tolist() == [0, 1, 1, 1, 2, 2, 2]  # up to R, then over the hole
+    words = np.full((7, 4), -1.0)
+    turn_axes(words, rows.hole, ((3, 90.0, 45.0),))
+    assert words[:, 3].tolist() == [-1, 45, 45, 45, 90, 90, 90]
+    assert (words[:, :3] == -1).all()
 
 
 def test_linuxcnc_keeps_the_last_dwell_for_tapping() -> None:

@@ -115,6 +115,8 @@ class CycleRule:
     alone           the setting of the control that says "drills" if a block drills which names no
                     place in the plane; "": it always drills. Where the setting is not given such a
                     block stays, and the level behind it is not known
+    turns           a call turns the rotary axes that it names while the tool goes to the hole, and
+                    drills; otherwise it is refused
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98
@@ -130,6 +132,7 @@ class CycleRule:
     keeps_dwell: bool = False
     stores: bool = False
     alone: str = ""
+    turns: bool = False
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True

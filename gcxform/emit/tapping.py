@@ -181,6 +181,8 @@ class Taps:
             holes = holes[:1]
         elif len(holes) > 1 and holes[0].moves > MOVES_TO_R:
             self._refuse(line, "repeats of a tap that rises to R would rise in blocks of their own")
+        elif not _same(holes[-1].bottom[3:], holes[0].bottom[3:]):
+            self._refuse(line, "repeats of a tap that turn axes would be blocks of their own")
         self.lines[line], self.count[line] = True, len(holes)
         for hole in holes:
             self._begin(hole.row)
@@ -238,6 +240,7 @@ class Taps:
         rest = self._rounded(line, "R", clearance)
         after = np.array(standing)
         after[place] = [said[axis] for axis in place]
+        after[3:] = hole.bottom[3:]
         retracts = self.task.read.modes.retract[line] == 1
         after[normal] = max(self.level, rest) if retracts else rest
         from_here = [standing[axis] for axis in range(3)]

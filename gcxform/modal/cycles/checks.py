@@ -110,7 +110,8 @@ class Checks:
             )
             yield repeats == 0, "{code} with no repeats at all", leave_out_block()
         count = rule.repeats
-        placed = (repeats == 0) & ~(np.isnan(calls.first) & np.isnan(calls.second))
+        nowhere = np.isnan(calls.first) & np.isnan(calls.second) & ~calls.turned
+        placed = (repeats == 0) & ~nowhere
         message = f"{{code}} with {count}0: whether it goes to the place given is not certain"
         yield placed, message, "give the place in a block of its own"
         yield repeats != np.floor(repeats), f"{{code}} with a fraction in {count}", ""

@@ -134,6 +134,7 @@ def holes_of(stretch: Stretch, drilled: Flags, pecks: Ints) -> Holes:
     shift = [stretch.words["ijk"[axis]] for axis in calls.plane.axes[:2]]
     return Holes(
         call,
+        number,
         calls.code[call],
         at,
         stretch.start[call],

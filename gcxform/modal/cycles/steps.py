@@ -24,6 +24,7 @@ class Holes:
     """One value per hole that is drilled, mm in the coordinates of the program.
 
     call       (n,) which call drills it
+    number     (n,) which of its call, from 0
     code       (n,) of the cycle: 81 is G81
     at         (n, 2) first and second axis of the hole
     start      (n, 2) where the tool stands before it
@@ -42,6 +43,7 @@ class Holes:
     """
 
     call: Ints
+    number: Ints
     code: Ints
     at: Floats
     start: Floats
@@ -61,6 +63,7 @@ class Rows:
     """Moves in the order in which they are made.
 
     call          (n,) which call a move belongs to
+    hole          (n,) which hole of it, from 1; 0 before the tool goes to the first
     kind          (n,) `Kind`, RAPID or LINE
     end           (n, 3) mm: first, second and normal axis of the plane
     synchronised  (n,) whether the move is tied to the spindle (tapping)
@@ -68,6 +71,7 @@ class Rows:
     """
 
     call: Ints
+    hole: Ints
     kind: Small
     end: Floats
     synchronised: Flags
@@ -115,7 +119,8 @@ def rows_of(holes: Holes, rule: CycleRule) -> Rows:
     synchronised = taps[hole] & (kind == Kind.LINE)
     behind_steps = first + approach + pecking
     events = tuple(sorted(_events(holes, rule, behind_steps), key=attrgetter("row")))
-    return Rows(holes.call[hole], kind, end, synchronised, events)
+    begun = holes.number[hole] + (at >= holes.rises[hole])
+    return Rows(holes.call[hole], begun, kind, end, synchronised, events)
 
 
 def _steps(holes: Holes, table: _Table, hole: Ints, step: Ints) -> tuple[Floats, Small]:

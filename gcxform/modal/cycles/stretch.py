@@ -37,7 +37,8 @@ class Calls:
     incremental  (n,) G91
     initial      (n,) G98: back to the initial level; otherwise (G99) to R
     spindle      (n,) how it turns: +1, -1, 0, or `UNKNOWN`
-    other_axes   (n,) whether there are words of axes other than X, Y, Z
+    turned       (n,) whether there are words of rotary axes, and the control turns them
+    other_axes   (n,) whether there are words of other axes that it does not take
     inverse      (n,) G93
     lost         (n,) whether an axis of the plane is named whose value only the machine knows
     line         (n,) of the program, from 0
@@ -60,6 +61,7 @@ class Calls:
     incremental: Flags
     initial: Flags
     spindle: Ints
+    turned: Flags
     other_axes: Flags
     inverse: Flags
     lost: Flags
@@ -213,7 +215,7 @@ class _Follower:
         words = {name: self._kept(name) for name in STICKY}
         repeats = np.where(np.isnan(calls.repeats), 1.0, calls.repeats)
         absent = np.isnan(calls.first) & np.isnan(calls.second) & np.isnan(calls.normal)
-        has_axes = ~absent | calls.lost
+        has_axes = ~absent | calls.lost | calls.turned
         wanted = has_axes | ~np.isnan(calls.r) if rule.stores else has_axes
         drilled = wanted & (repeats > 0)
         clearance, bottom = words["r"], words["normal"]

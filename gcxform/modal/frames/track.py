@@ -332,14 +332,14 @@ class Track:
         if lost is not None:
             value = np.where(lost & ~present, np.nan, value)
             nowhere = incremental & lost & (not self.dialect.block_rule.m_first)
-            self._refuse_steps(nowhere, axis, here.start, lost)
+            self.refuse_steps(nowhere, axis, here.start, lost)
             placed = placed | (lost & ~incremental)
         if not incremental.any():
             return fill(value, placed, before)
         position = with_increments(value, placed, incremental, before)
         nowhere = incremental & ~np.isfinite(position) & np.isfinite(value)
         nowhere &= ~(self.may_step[here] & np.isnan(position))
-        self._refuse_steps(nowhere, axis, here.start, lost)
+        self.refuse_steps(nowhere, axis, here.start, lost)
         return position
 
     def named(self, own: Flags) -> Ints:
@@ -352,7 +352,7 @@ class Track:
         named[named == 0] = (1 << len(self.axes)) - 1  # G28 alone is of all axes
         return np.where(own, named, 0)
 
-    def _refuse_steps(self, which: Flags, axis: str, first: int, lost: Flags | None) -> None:
+    def refuse_steps(self, which: Flags, axis: str, first: int, lost: Flags | None) -> None:
         """Refuse incremental words of lines, counted from the first, that begin nowhere known."""
         for line in np.flatnonzero(which)[: Findings.enough].tolist():
             self.findings.add(

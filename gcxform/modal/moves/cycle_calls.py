@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH
+from gcxform.dialect.dialect import INCH, ROTARY
 from gcxform.modal.cycles.expansion import UNKNOWN, Calls
 from gcxform.modal.findings import Findings
 from gcxform.modal.frames.track import Track
@@ -34,6 +34,7 @@ class _Common:
     code: Ints
     initial: Flags
     spindle: Ints
+    turned: Flags
     other_axes: Flags
     inverse: Flags
     line: Ints
@@ -134,7 +135,8 @@ class CallColumns:
         rule = self.lines.dialect.cycle_rule
         letters = "XYZR" if rule is not None and rule.stores else "XYZ"
         named = [~np.isnan(self.word(letter, slice(None))) for letter in letters]
-        return np.asarray(self.calls & np.any(named, axis=0) & (self._counts > 0))
+        named.append(self.common.turned)
+        return np.asarray(self.calls & np.any(named, axis=0) & (self.counts > 0))
 
     @cached_property
     def last_drilled(self) -> Ints:
@@ -142,7 +144,7 @@ class CallColumns:
         return self._latest(self._drilled)
 
     @cached_property
-    def _counts(self) -> Floats:
+    def counts(self) -> Floats:
         """How often each line drills."""
         repeats = self.word(self.repeats, slice(None))
         return np.where(np.isnan(repeats), 1.0, repeats)
@@ -151,7 +153,7 @@ class CallColumns:
         """Return how far each line goes by increments, all of its repeats; None if none does."""
         if axis not in self._increments:
             stepping = self._drilled & self.modes.incremental
-            way = self.word(axis, slice(None)) * self._counts
+            way = self.word(axis, slice(None)) * self.counts
             along = np.where(stepping & ~np.isnan(way), way, 0.0)
             self._increments[axis] = along if stepping.any() else None
         return self._increments[axis]
@@ -170,15 +172,19 @@ class CallColumns:
     def common(self) -> _Common:
         """What the modes of all lines are to cycles."""
         modes, lines = self.modes, self.lines
-        other_axes = np.zeros(lines.live, np.bool_)
+        rule = lines.dialect.cycle_rule
+        turns = ROTARY if rule is not None and rule.turns else ""
+        turned, other_axes = np.zeros((2, lines.live), np.bool_)
         for axis in self.track.axes:
             word = None if axis in "XYZ" else self.track.column(axis)
             if word is not None:
-                other_axes |= word[1]
+                which = turned if axis in turns else other_axes
+                which |= word[1]
         return _Common(
             modes.cycle.astype(np.int64),
             modes.retract == 1,
             SPINDLE[modes.spindle],
+            turned,
             other_axes,
             modes.feed_mode == 93,
             np.arange(lines.live) + lines.window.first_line,
@@ -204,6 +210,7 @@ class CallColumns:
             modes.incremental[here],
             common.initial[here],
             common.spindle[here],
+            common.turned[here],
             common.other_axes[here],
             common.inverse[here],
             self.lost[here],

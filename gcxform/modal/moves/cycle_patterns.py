@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.dialect.dialect import INCH
+from gcxform.dialect.dialect import INCH, ROTARY
 from gcxform.modal.cycles.expansion import Calls, Cycles
 from gcxform.modal.cycles.stretch import Mode, Stretch
 from gcxform.modal.frames.track import PLANES, Break, Track
@@ -30,13 +30,15 @@ from gcxform.toolpath.path import Event, Form, Plane
 from gcxform.values import dataclass
 
 MANUAL = 88  # the cycle out of which the operator moves the tool
+TURNING = "words of rotary axes in a cycle turn them on the way to the hole, and drill it"
 
 
 @dataclass(frozen=True, slots=True)
 class _Followed:
     """A stretch: its lines, plane, unit; words (axes,), frame and dwell (s) in force before it.
 
-    `stretch` are its columns; None where they are found later, with those of others.
+    `stretch` are its columns; None where they are found later, with those of others. `turns` are
+    the rotary axes that it turns, as it is one call then: which, to where, and by how much a hole.
     """
 
     first: int
@@ -47,6 +49,7 @@ class _Followed:
     frame: int
     dwell: float
     stretch: Stretch | None
+    turns: tuple[tuple[int, float, float], ...] = ()
 
 
 class Drilling:
@@ -80,7 +83,8 @@ class Drilling:
             return np.empty(0, np.int64)
         way = np.where(calls, 1 + modes.plane + 256 * modes.inch, 0)
         borders = np.flatnonzero(np.diff(way, prepend=0))
-        alone = union(np.flatnonzero(self._placeless), [*self._lost])
+        turned = np.flatnonzero(calls & self.columns.common.turned)
+        alone = union(np.flatnonzero(self._placeless), [*self._lost, *turned])
         if not len(alone):
             return borders
         alone = alone.astype(np.int64)
@@ -150,13 +154,36 @@ class Drilling:
             end = stretch.after[-1].tolist()
         for axis, place in zip(plane.axes, end, strict=True):
             after[axis] = place
-        frame = len(track.frames) - 1
-        self._followed.append(_Followed(first, last, plane, unit, words, frame, dwell, stretch))
+        turns = self._turns(first, words) if self.columns.common.turned[first] else ()
+        for k, place, _ in turns:
+            after[k] = place
+        at = len(track.frames) - 1, dwell, stretch, turns
+        self._followed.append(_Followed(first, last, plane, unit, words, *at))
         track.state.position = np.array(track.frame.point(after))
         if self._placeless[first]:
             self._leave_open(first, words, after)
         if self._has_manual and (self.modes.cycle[first:last] == MANUAL).any():
             track.breaks.append(Break(last, 1 << plane.axes[2]))
+
+    def _turns(self, line: int, words: list[float]) -> tuple[tuple[int, float, float], ...]:
+        """Return the rotary axes that a call turns: which, to where, and by how much a hole.
+
+        `words` (axes,) are those in force before it. A call that drills nothing turns nothing.
+        """
+        track, found = self.track, []
+        if track.state.frames.following or track.state.frames.plane is not None:
+            message = "a canned cycle turns axes in a tilted plane, or while the tip is followed"
+            track.findings.add(line, "GX215", message, hint="move them before it")
+        for axis, word in track.words_on(line).items():
+            k, step, before = track.axes.index(axis), 0.0, words[track.axes.index(axis)]
+            if axis not in ROTARY or not self.columns.counts[line] > 0:
+                continue
+            if self.modes.incremental[line]:
+                track.refuse_steps(np.array([np.isnan(before)]), axis, line, None)
+                step, word = word, before + word * self.columns.counts[line]
+            found.append((k, float(word), float(step)))
+            track.state.assumed[TURNING] = None
+        return tuple(found)
 
     @cached_property
     def _has_manual(self) -> bool:
@@ -260,7 +287,8 @@ class Drilling:
         has = {letter: ~np.isnan(self.columns.word(letter, slice(None))) for letter in "XYZR"}
         for plane in Plane:
             first, second, normal = ("XYZ"[axis] for axis in plane.axes)
-            here = drills & (self.modes.plane == plane) & (has[normal] | has["R"])
+            named = has[normal] | has["R"] | self.columns.common.turned
+            here = drills & (self.modes.plane == plane) & named
             found |= here & ~has[first] & ~has[second]
         return found
 
@@ -314,6 +342,9 @@ class Drilling:
         which = np.repeat(np.arange(len(followed)), np.diff(bounds))
         words = before.T[:, which].T
         words[:, list(followed[0].plane.axes)] = rows.end
+        for n in [n for n, one in enumerate(followed) if one.turns]:
+            turned = slice(*bounds[n : n + 2])
+            turn_axes(words[turned], rows.hole[turned], followed[n].turns)
         frame = np.array([one.frame for one in followed])[which]
         return Rows(
             line[rows.call],
@@ -332,3 +363,13 @@ class Drilling:
         whose = np.searchsorted(firsts, lines, "right") - 1
         behind = np.array([event.row for event in events]) - bounds[whose]
         self.events += zip(firsts[whose].tolist(), behind.tolist(), events, strict=True)
+
+
+def turn_axes(words: Floats, hole: Ints, turns: tuple[tuple[int, float, float], ...]) -> None:
+    """Turn axes on the way to holes, in the words (n, axes) of the moves of one call.
+
+    `hole` (n,) counts the holes from 1, and is 0 where the tool rises before it goes to the first.
+    """
+    going = hole > 0
+    for k, place, step in turns:
+        words[going, k] = place - step * (hole[-1:] - hole)[going]

@@ -37,6 +37,7 @@
 | G10 L1, L10 to L13 | kept; the lengths and radii of tools are not known from there on |
 | tool change | moves axes: positions are unknown after it, but for `inert-m = [6]` |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
+| `A90.` in a cycle, also alone | turns on the way to the hole, and drills: shops index so |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
 | G82, G89 without P | how long they dwell is not known: refused, unless the blocks are copied |
 | G76 | the shift in the hole is a parameter's: stays, to the same control; else refused |
@@ -123,7 +124,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, repeats="K")
+CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, turns=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):
