@@ -14,6 +14,8 @@ ANSWERS: dict[str, Any] = {
     "peck-clearance": 1.0,
     "g52": "fanuc",
     "cycle-without-place": "drills",
+    "cycle-levels": "stay",
+    "cycle-repeats": "L",
     "user-codes": "keep",
     "tool-length-axis": "Z",
     "basic-frames": "none",

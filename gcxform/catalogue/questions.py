@@ -58,6 +58,7 @@ SHOWN: Final[Mapping[Question, Mapping[str, str]]] = {
     ("control", "peck-clearance"): {"fanuc": "parameter 5115", "haas": "Setting 22"},
     ("control", "g52"): {"haas": "Setting 33"},
     ("control", "cycle-without-place"): {"haas": "Setting 28"},
+    ("control", "cycle-repeats"): {"fanuc": "parameter 0001 bit 1 (FCV): 1 is L"},
 }
 
 

@@ -129,7 +129,8 @@ CODES: dict[str, tuple[str, str]] = {
         "What the cycle does cannot be told: a word is missing or cannot be, a level is not known, "
         "the control refuses it, or a setting of the control decides. The message says which. "
         "Settings go to [control] of the machine file: peck-return for G73, peck-clearance for "
-        "G83, cycle-without-place for blocks that name no place.",
+        "G83, cycle-without-place for blocks that name no place, cycle-levels for R and Z behind a "
+        "G91, cycle-repeats for L in the place of K.",
     ),
     "GX216": (
         "A thread, a tap or a probe that the control refuses",

@@ -14,6 +14,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any, cast
 
+from gcxform.contract.cycle_settings import with_cycle_settings
 from gcxform.diagnostics import UsageError
 from gcxform.dialect.codes import Code, Effect
 from gcxform.dialect.dialect import Dialect
@@ -28,7 +29,7 @@ ONE_BLOCK = "non-modal"
 def with_own_codes(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
     """Return the dialect with the codes that a machine file declares; itself without any.
 
-    Raises UsageError for codes that the dialect has.
+    And with what it says of canned cycles. Raises UsageError for codes that the dialect has.
     """
     names = {name.partition(MACRO)[2] for name, ends in control.items() if _declares(name, ends)}
     other = {
@@ -36,6 +37,7 @@ def with_own_codes(dialect: type[Dialect], control: Mapping[str, str | float]) -
         for name, how in control.items()
         if name.startswith(OTHER)
     }
+    dialect = with_cycle_settings(dialect, control)
     dialect = _changed(cast(Any, dialect), tuple(sorted(other.items()))) if other else dialect
     return _with(cast(Any, dialect), tuple(sorted(names))) if names else dialect
 

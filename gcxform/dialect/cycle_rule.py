@@ -108,6 +108,8 @@ class CycleRule:
                     wherever it stands at or below R
     keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given.
                     Where no P has been, how long it dwells is not known, and its block stays
+    levels_stay     R and Z that were given in G90 stay levels behind a G91; otherwise, and where
+                    distances are in force behind a G90, what they are is not known
     keeps_dwell     the last P stays for good, for cycles that take P but do not need it; 0 s before
                     the first one of the program
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
@@ -129,6 +131,7 @@ class CycleRule:
     peck_clearance: float | None = None
     rises_first: bool = False
     keeps_words: bool = False
+    levels_stay: bool = False
     keeps_dwell: bool = False
     stores: bool = False
     alone: str = ""

@@ -130,6 +130,8 @@ declare(
         Setting("local-variables", "what #1 to #33 are before the program", ("null",)),
         Setting("null-compare", "whether null EQ 0 is false, or true", ("distinct", "zero")),
         Setting("macro-repeat", "variables of a macro in the second run of L", ("keep", "anew")),
+        Setting("cycle-levels", "what R and Z of a cycle in G90 are behind a G91", ("stay",)),
+        Setting("cycle-repeats", "what counts the holes of a cycle, if not K", ("L",)),
         Setting("peck-return", "how far G73 goes up between pecks"),
         Setting("peck-clearance", "how far above the last depth a peck of G83 begins"),
         _Code("tip-on", "the M code from which the control follows the tip of the tool"),

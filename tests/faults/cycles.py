@@ -74,13 +74,13 @@ FAULTS = (
     (
         "R is a distance from nowhere",
         STRETCH,
-        "np.where(calls.incremental, self.initial, 0.0)",
+        'np.where(by_steps["r"], self.initial, 0.0)',
         "0.0",
     ),
     (
         "the bottom is a distance from nowhere",
         STRETCH,
-        "np.where(calls.incremental, clearance, 0.0)",
+        'np.where(by_steps["normal"], clearance, 0.0)',
         "0.0",
     ),
     (
@@ -222,6 +222,27 @@ MUTATIONS = (
         " & ~_stores_taps(task, count)",
         "",
         "tests/test_corpus.py::test_case[tied/tap-stored]",
+    ),
+    Mutation(
+        "cycles: R of G90 is a distance in G91 where levels stay",
+        STRETCH,
+        "return in_g91 if rule.levels_stay else",
+        "return",
+        "tests/test_corpus.py::test_case[dialects/fanuc/levels-in-steps]",
+    ),
+    Mutation(
+        "cycles: a row of holes ends where R would be a distance",
+        "gcxform/modal/moves/pattern_ends.py",
+        "[called] if stay else called]",
+        "[called] if False else called]",
+        "tests/test_corpus.py::test_case[dialects/fanuc/levels-in-steps-behind]",
+    ),
+    Mutation(
+        "cycles: distances of G91 are levels in G90",
+        "gcxform/modal/cycles/checks.py",
+        "yield mixed & ~calls.incremental, message, again",
+        "yield mixed & False, message, again",
+        "tests/test_corpus.py::test_case[dialects/fanuc/levels-of-steps-in-g90]",
     ),
     Mutation(
         "cycles: repeats of a call do not turn the axis further",

@@ -18,6 +18,7 @@ UNKNOWN = 2
 """How the spindle turns where nobody knows; otherwise +1 (M3), -1 (M4), 0."""
 MOST = 100_000  # moves that one block may become
 ENOUGH = 50  # refusals of one kind
+LEVELS_STAY = 'cycle-levels = "stay" in [control] of the machine file'
 SAME = 1e-9  # mm; levels nearer than that are one, less the last digits of a work offset
 
 
@@ -154,7 +155,10 @@ class Checks:
             if self.rule.keeps_words:
                 mixed = drilled & (stretch.in_g91[name] != calls.incremental)
                 message = f"{{code}} with {letter} in force from before a G90 or G91"
-                yield mixed, message, "give it again in this block"
+                again = "give it again in this block"
+                yield mixed & ~calls.incremental, message, again
+                if not self.rule.levels_stay:
+                    yield mixed, message, f"{again}, or say {LEVELS_STAY}"
         unknown = drilled & np.isnan(stretch.initial)
         hint = (
             f"begin with an absolute {normal}, or say start = {{{{ {normal} = ... }}}} in [input]"

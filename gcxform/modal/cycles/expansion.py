@@ -16,7 +16,15 @@ import numpy as np
 from gcxform.dialect.cycle_rule import CycleRule, Level
 from gcxform.modal.cycles.checks import MOST, UNKNOWN, Checks, Refusal
 from gcxform.modal.cycles.steps import Holes, Rows, pecks_of, rows_of
-from gcxform.modal.cycles.stretch import Calls, Mode, Stretch, follow, follow_fresh, joined
+from gcxform.modal.cycles.stretch import (
+    Calls,
+    Mode,
+    Stretch,
+    follow,
+    follow_fresh,
+    joined,
+    steps_of,
+)
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.values import dataclass
 
@@ -110,8 +118,9 @@ def _pecks(stretch: Stretch, rule: CycleRule) -> Ints:
         return pecks
     quantity = programmed(stretch.words["q"])
     start = programmed(stretch.initial)
-    top = programmed(stretch.words["r"]) + np.where(calls.incremental, start, 0.0)
-    bottom = programmed(stretch.words["normal"]) + np.where(calls.incremental, top, 0.0)
+    by_steps = steps_of(calls, stretch.in_g91, rule)
+    top = programmed(stretch.words["r"]) + np.where(by_steps["r"], start, 0.0)
+    bottom = programmed(stretch.words["normal"]) + np.where(by_steps["normal"], top, 0.0)
     possible = pecking & (quantity > 0)
     few = possible & (top - bottom < MOST * quantity)
     pecks[possible] = MOST

@@ -6,7 +6,7 @@ All that follows from its columns is done later, for many stretches at once: the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field, fields, replace
 from itertools import pairwise
 from typing import Any
@@ -138,6 +138,14 @@ class Stretch:
         )
 
 
+def steps_of(calls: Calls, in_g91: Mapping[str, Flags], rule: CycleRule) -> Mapping[str, Flags]:
+    """Return, by name, where R counts from the level before the cycle, and Z from R.
+
+    `in_g91` is as in `Stretch`.
+    """
+    return in_g91 if rule.levels_stay else dict.fromkeys(in_g91, calls.incremental)
+
+
 def joined(stretches: Sequence[Stretch]) -> Stretch:
     """Return stretches of one plane and unit as one, for all that goes by columns."""
     if len(stretches) == 1:
@@ -219,9 +227,11 @@ class _Follower:
         wanted = has_axes | ~np.isnan(calls.r) if rule.stores else has_axes
         drilled = wanted & (repeats > 0)
         clearance, bottom = words["r"], words["normal"]
-        if calls.incremental.any():
-            clearance = clearance + np.where(calls.incremental, self.initial, 0.0)
-            bottom = bottom + np.where(calls.incremental, clearance, 0.0)
+        in_g91 = {name: self._incremental(name) for name in ("r", "normal")}
+        by_steps = steps_of(calls, in_g91, rule)
+        if by_steps["r"].any() or by_steps["normal"].any():
+            clearance = clearance + np.where(by_steps["r"], self.initial, 0.0)
+            bottom = bottom + np.where(by_steps["normal"], clearance, 0.0)
         high = np.maximum(self.initial, clearance)
         retract = np.where(calls.initial, high, clearance)
         ends = self._filled(retract, drilled, self.positions[:, 2])
@@ -230,7 +240,7 @@ class _Follower:
         return Stretch(
             calls,
             words,
-            {name: self._incremental(name) for name in ("r", "normal")},
+            in_g91,
             self._dwell(words["p"]),
             self.initial,
             repeats,

@@ -257,7 +257,8 @@ class Drilling:
             return
         counted = self.calls & ~np.isnan(self.columns.word("L", slice(None)))
         for line in np.flatnonzero(counted).tolist():
-            message, hint = "L counts nothing here: this control repeats cycles by K", "write K"
+            message = "L counts nothing here: this control repeats cycles by K"
+            hint = 'write K, or say cycle-repeats = "L" in [control] of the machine file'
             self.track.findings.add(line, "GX215", message, "L", hint)
 
     def _refuse_without_place(self) -> None:

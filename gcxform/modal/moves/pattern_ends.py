@@ -52,11 +52,13 @@ def pattern_ends(columns: CallColumns, borders: Sequence[tuple[int, int]]) -> di
         return {}
     words = zip(*(_said(columns, axis, first, last - 1) for axis in "XYZ"), strict=True)
     called = columns.last_drilled[last - 1]
+    rule = columns.lines.dialect.cycle_rule
+    stay = rule is not None and rule.levels_stay
     of = (
         _said(columns, "P", first, last - 1).tolist(),
         (called >= first).tolist(),
         _said(columns, "R", first, called).tolist(),
-        modes.incremental[called].tolist(),
+        modes.incremental[columns.lasts("R")[called] if stay else called].tolist(),
         columns.common.initial[called].tolist(),
         (columns.added_until[first] != columns.added_until[last]).tolist(),
     )

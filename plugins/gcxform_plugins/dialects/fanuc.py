@@ -37,6 +37,8 @@
 | G10 L1, L10 to L13 | kept; the lengths and radii of tools are not known from there on |
 | tool change | moves axes: positions are unknown after it, but for `inert-m = [6]` |
 | canned cycles | R, Z, P, Q stay until the cycle mode ends; K0 stores them without drilling |
+| R, Z of G90 behind G91 | levels still, or distances: refused, or `cycle-levels = "stay"` |
+| L of a cycle | counts holes in the format of a Series 15: `[control] cycle-repeats = "L"` |
 | `A90.` in a cycle, also alone | turns on the way to the hole, and drills: shops index so |
 | G73, G83 between pecks | parameters 5114, 5115: must be given, unless the blocks are copied |
 | G82, G89 without P | how long they dwell is not known: refused, unless the blocks are copied |
