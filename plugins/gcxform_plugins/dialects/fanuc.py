@@ -196,7 +196,7 @@ class Fanuc(gx.Dialect):
         **v.ISO_M,
         5: gx.MCode("spindle", after=True),
         9: gx.MCode("coolant", after=True),
-        6: gx.MCode("tool", loses_position=True),
+        6: gx.MCode("tool", loses_position=True, takes="PQ"),
         **{code: gx.MCode("override") for code in (48, 49)},
         19: gx.MCode("spindle"),
         29: gx.MCode("tapping"),

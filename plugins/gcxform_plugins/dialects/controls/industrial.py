@@ -52,6 +52,8 @@ NO_ASIDES = replace(Fanuc.text_rule, asides=False)
 CALLS_ALONE = replace(Fanuc.flow_rule, words_first=False)
 NO_CORNERS = replace(Fanuc.motion_rule, corners="")
 """What the others put into a corner by `,R` and `,C` is not looked up: refused."""
+NO_TURNS = replace(Fanuc.cycle_rule, turns=False)
+"""Nor what words of rotary axes do in a cycle."""
 
 
 class Mazak(Fanuc):
@@ -60,6 +62,7 @@ class Mazak(Fanuc):
     name = "mazak"
     kin = "fanuc"
     motion_rule = NO_CORNERS
+    cycle_rule = NO_TURNS
     tip_rule = TIPS
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
@@ -73,6 +76,7 @@ class Mitsubishi(Fanuc):
     name = "mitsubishi"
     kin = "fanuc"
     motion_rule = NO_CORNERS
+    cycle_rule = NO_TURNS
     tip_rule = TIPS
     flow_rule = CALLS_ALONE
     m_codes: ClassVar[Mapping[int, gx.MCode]] = {**Fanuc.m_codes, 88: gx.MCode("coolant")}
@@ -95,6 +99,7 @@ class Syntec(Fanuc):
     name = "syntec"
     kin = "fanuc"
     motion_rule = NO_CORNERS
+    cycle_rule = NO_TURNS
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
@@ -128,6 +133,7 @@ class Brother(Fanuc):
     name = "brother"
     kin = "fanuc"
     motion_rule = NO_CORNERS
+    cycle_rule = NO_TURNS
     tip_rule = NO_PLANES
     flow_rule = CALLS_ALONE
     program_rule = UNTITLED
