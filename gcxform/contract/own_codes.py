@@ -75,7 +75,7 @@ def _changed(dialect: Any, other: tuple[tuple[str, str], ...]) -> type[Dialect]:
 
 @cache
 def _with(dialect: Any, names: tuple[str, ...]) -> type[Dialect]:
-    codes = {name: Code(MACRO.strip(), Effect.CALL, ALL_WORDS) for name in names if name[0] == "G"}
+    codes = {name: _declared(dialect.codes.get(name)) for name in names if name[0] == "G"}
     for name in names:
         _check(dialect, name)
     flow = replace(dialect.flow_rule, kept_codes=dialect.flow_rule.kept_codes | {*names})
@@ -84,6 +84,12 @@ def _with(dialect: Any, names: tuple[str, ...]) -> type[Dialect]:
     own = {"codes": {**dialect.codes, **codes}, "flow_rule": flow}
     made: type[Dialect] = type(dialect.__name__, (dialect,), own)
     return made
+
+
+def _declared(known: Code | None) -> Code:
+    """Return a code that is kept as a call; one that cuts in a way of its own does so as before."""
+    cuts = known is not None and known.effect is Effect.CALL
+    return Code(MACRO.strip(), Effect.CALL, ALL_WORDS, known.reason if known and cuts else "")
 
 
 def _check(dialect: type[Dialect], name: str) -> None:

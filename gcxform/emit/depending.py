@@ -170,6 +170,8 @@ class Depending:
         for line in np.flatnonzero(flag("calls", shape) | macros).tolist():
             if why := self._finds_other(line):
                 message = f"this call, whose program is not known, would find {why}"
+                if self._cuts(line):
+                    message = f"what the control cuts by this code would find {why}"
                 hint = LED if why == UNCORRECTED else "leave out the pass that changes this"
                 if macros[line]:
                     message = f"{self._macro_codes(line)}, which may run a macro, would find {why}"

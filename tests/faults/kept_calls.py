@@ -21,6 +21,20 @@ def _kept(name: str, file: str, old: str, new: str, case: str) -> Mutation:
 
 
 MUTATIONS = (
+    Mutation(
+        "kept calls: a pocket that is declared is compensated by nobody",
+        "gcxform/contract/own_codes.py",
+        'known.reason if known and cuts else ""',
+        '""',
+        "tests/test_corpus.py::test_case[volumetric/pocket-that-is-declared]",
+    ),
+    Mutation(
+        "kept calls: a pocket sets offsets",
+        "gcxform/modal/frames/work_offsets.py",
+        "(code is not None and code.reason)",
+        "False",
+        "tests/test_corpus.py::test_case[dialects/haas/round-pocket-and-offsets]",
+    ),
     _kept(
         "lines of what is compensated may shift, where frames are folded",
         "gcxform/emit/respelling.py",

@@ -31,9 +31,11 @@ def _article(address: str) -> str:
 def behind_call(state: FrameState, asked: Asked) -> FrameState:
     """Lose work offsets and tool length behind a call of what is not there: it may have set them.
 
-    Nothing is lost where the machine file says that all is as it was.
+    Nothing is lost where the machine file says that all is as it was, nor behind a code by which
+    the control itself cuts.
     """
-    if asked.ends not in ("", "unknown"):
+    code = asked.dialect.codes.get(asked.code)
+    if asked.ends not in ("", "unknown") or (code is not None and code.reason):
         return state
     unknown = (np.nan,) * len(state.axes)
     tool = (*state.tool[:2], np.nan) if state.tool_name else state.tool

@@ -1,9 +1,10 @@
 """What is not known behind a call that is kept, as what it calls is not there to be read.
 
-Positions, variables of the program, offsets, and what macros set as they go: the motion code, G90
-or G91, F. Each has to be programmed again before it is needed. Units, plane and feed mode are taken
-to be as before where what is written is the same in any of them, as for `absolute`; the certificate
-says so. Where a length, an arc or a time is made of what is read they are needed as well.
+Positions, variables of the program, offsets (not where the control itself cuts), and what macros
+set as they go: the motion code, G90 or G91, F. Each has to be programmed again before it is needed.
+Units, plane and feed mode are taken to be as before where what is written is the same in any of
+them, as for `absolute`; the certificate says so. Where a length, an arc or a time is made of what
+is read they are needed as well.
 """
 
 from __future__ import annotations
@@ -120,7 +121,9 @@ def _refuse_calls(lines: Lines, modes: Modes) -> None:
         if lines.dialect.translator is not None:
             continue  # it has said so
         lines.state.kept_calls[call.name] = lines.state.kept_calls.get(call.name, 0) + 1
-        said = f"{call.name} is kept: {_taken(call.ends, lines.reading.modes_count)}"
+        code = lines.dialect.codes.get(call.name)
+        cuts = code is not None and bool(code.reason)
+        said = f"{call.name} is kept: {_taken(call.ends, lines.reading.modes_count, cuts)}"
         lines.state.assumed.setdefault(said, None)
 
 
@@ -131,10 +134,11 @@ def _note_computed(lines: Lines, line: int) -> None:
         lines.unknown.append(Unknown(line, computed, ""))
 
 
-def _taken(ends: str, modes_count: bool) -> str:
+def _taken(ends: str, modes_count: bool, cuts: bool) -> str:
+    lost = "positions and variables" if cuts else "positions, offsets and variables"
     if ends == UNKNOWN or (not ends and modes_count):
-        return "positions, offsets and variables are lost behind it" + ", and modes" * (not ends)
+        return f"{lost} are lost behind it" + ", and modes" * (not ends)
     if ends:
         return f"the machine file says that it ends {ends}; variables are lost behind it"
     modes = "units, plane, feed mode and compensation are as before"
-    return f"positions, offsets and variables are lost behind it, and {modes}"
+    return f"{lost} are lost behind it, and {modes}"

@@ -28,7 +28,7 @@ that what hangs on it is an option or refused. What is not named here is as in `
 | canned cycles | L counts the holes, L0 stores | known |
 | G73 G83 by I, J, K, or with P | stay as they are, to the same control; else refused | manual |
 | a cycle without X and Y | Setting 28: stays, or `cycle-without-place = "drills"` | manual |
-| G12 G13, G47 | pockets and engraving in their block: kept, places are lost behind it | manual |
+| G12 G13, G47 | pockets and engraving: kept, places are lost behind them, no offsets | manual |
 | G150, drilling | cycles: refused by name | manual |
 | G70 G71 G72 | drill holes of the cycle in force at places of their own: as these | manual |
 | G31 | as Fanuc's | manual |
