@@ -169,7 +169,8 @@ class CodeWords:
                 word in w for w in apart(self.manner, self.shape)
             ):
                 return  # it has a block of its own
-        if self.key.expanded and word in over_hole(self.source, self.shape):
+        drills = self.key.expanded and self.key.role is not Role.NONE
+        if drills and word in over_hole(self.source, self.shape):
             return  # it has one between the moves
         after = code is not None and code.after
         whole = self.key.role is Role.ONLY or self.key.as_it_stands

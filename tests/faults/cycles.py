@@ -245,6 +245,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/fanuc/levels-of-steps-in-g90]",
     ),
     Mutation(
+        "cycles: an M code beside no hole is lost with the cycle",
+        "gcxform/emit/codewords.py",
+        "self.key.expanded and self.key.role is not Role.NONE",
+        "self.key.expanded",
+        "tests/test_corpus.py::test_case[dialects/fanuc/m-alone-in-a-cycle]",
+    ),
+    Mutation(
         "cycles: repeats of a call do not turn the axis further",
         DRILLING,
         "place - step * (hole[-1:] - hole)[going]",
