@@ -1426,9 +1426,23 @@ MUTATIONS = (
     Mutation(
         "klartext: the text of a structure block is a step",
         "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
-        " and not TITLE.match(line)",
+        " and not NO_STEPS.match(line)",
         "",
         "tests/test_corpus.py::test_case[dialects/heidenhain-title-with-steps]",
+    ),
+    Mutation(
+        "klartext: IX of a shift counts from where an axis stands",
+        "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
+        "(?:CYCLE?[ \\t]+DEF|TRANS)(?![A-Z])",
+        "TRANS(?![A-Z])",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/steps-of-shifts]",
+    ),
+    Mutation(
+        "klartext: a number stands before the slash",
+        "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
+        'SKIPPED = r"[ \\t]*(?:/[ \\t]*)?"',
+        'SKIPPED = r"[ \\t]*"',
+        "tests/test_corpus.py::test_case[dialects/heidenhain/number-behind-a-slash]",
     ),
     Mutation(
         "klartext: a cycle that is called at another place is written out",

@@ -39,8 +39,8 @@ PLAIN = re.compile(
 """And that neither turn nor tilt what follows, whatever they say."""
 SCALES = re.compile(r"CYCLE?\s+DEF\s*(?:11|26)\.[1-9](?!\s*SCL\s*1(?:\.0*)?\s*$)|TRANS\s+SCALE")
 HEAD = re.compile(r"[ \t]*(?:[0-9]+[ \t]+)?")
-TITLE = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?\*")
-"""A structure block: a text."""
+NO_STEPS = re.compile(r"[\s\d/]*(?:\*|(?:CYCLE?[ \t]+DEF|TRANS)(?![A-Z]))", re.IGNORECASE)
+"""A structure block, which is a text; and a shift, whose IX adds to what no line of it can say."""
 ARCS = re.compile(
     r"(?i)^[\s\d/]*(?:(?:C|CR|CT|CP|CTP|RND|FCT?|SPL)(?![A-Z])|(?:APPR|DEP)\s*P?(?:CT|LCT))"
 )
@@ -50,8 +50,10 @@ AGAINST = {
     "NO_CYCLES": re.compile(r"(?i)^[^;]*?(?:CYCL[ \t]+CALL|(?<![A-Z])M0*(?:89|99)(?![0-9]))"),
 }
 NUMBERED = re.compile(r"[ \t]*([0-9]+)[ \t]+BEGIN", re.IGNORECASE)
-NUMBER = re.compile(r"^([ \t]*)(?:[0-9]+([ \t]*))?")
-FREE = re.compile(r"^[ \t]*[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
+SKIPPED = r"[ \t]*(?:/[ \t]*)?"
+"""What stands before the number of a block: the slash of one that may be skipped."""
+NUMBER = re.compile(rf"^({SKIPPED})(?:[0-9]+([ \t]*))?")
+FREE = re.compile(rf"^{SKIPPED}[0-9]+[ \t]+F[LC]T?(?![A-Z])", re.IGNORECASE | re.MULTILINE)
 STATE = (
     *("place", "lost", "pole", "polar", "moved", "motion", "feed", "tool_feed", "feed_lost"),
     *("following", "shortest", "side", "in_spindle", "over", "begun", "axis", "tool", "q", "at"),
@@ -248,7 +250,7 @@ class Programs(Runs):
 
     def counts(self, line: str) -> bool:
         """Whether a line has a word that counts from where its axis stands."""
-        return STEPPED.search(code(line)) is not None and not TITLE.match(line)
+        return STEPPED.search(code(line)) is not None and not NO_STEPS.match(line)
 
     def closing(self) -> Iterator[str]:
         """Say which lines are kept. Raises InputError for a program that breaks off."""
