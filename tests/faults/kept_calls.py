@@ -80,9 +80,16 @@ MUTATIONS = (
     _kept(
         "F is known behind one",
         f"{SIEMENS}blocks.py",
-        "self.feed_open, self.along, self.place.moved = True, None, True",
-        "self.along, self.place.moved = None, True",
+        "self.feed_open |= not hole.of_before",
+        "self.feed_open = False",
         "kept-hole-no-feed",
+    ),
+    _kept(
+        "a stroke that is slowed is none",
+        f"{SIEMENS}cycles.py",
+        'and values[FRF] in ("", "0", "1")',
+        "",
+        "kept-hole-slower",
     ),
     _kept(
         "a contour of the program is that of another",

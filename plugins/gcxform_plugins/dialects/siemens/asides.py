@@ -20,6 +20,7 @@ QUIET = frozenset((
     "SOFT", "BRISK", "DRIVE", "FFWON", "FFWOF", "COMPON", "COMPOF", "COMPCURV", "COMPCAD",
     "COMPSURF", "UPATH", "SPATH", "FNORM", "WALIMON", "STOPRE", "DIAMOF", "NORM", "KONT", "CUT2D",
     "ORISON", "ORISOF", "RTLION", "RTLIOF", "CFC",
+    "DYNNORM", "DYNPOS", "DYNROUGH", "DYNSEMIFIN", "DYNFINISH",
 ))
 # fmt: on
 """Commands that move nothing and change no word behind them."""

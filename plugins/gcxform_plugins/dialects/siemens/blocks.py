@@ -271,7 +271,8 @@ class Blocks(Contours):
         ends += [f"K{Decimal(words[0][1:]) - Decimal(word[1:]):f}" for word in ground]
         yield " ".join([code, *ends, gx.Speller.aside(hole.kept)])
         self.calls_kept[hole.kept.partition("(")[0].strip().upper()] = None
-        self.feed_open, self.along, self.place.moved = True, None, True
+        self.feed_open |= not hole.of_before
+        self.along, self.place.moved = None, True
         if hole.cuts:
             gone = self.plane if words else LINEAR
             self.place.lose(gone, shifted=False)

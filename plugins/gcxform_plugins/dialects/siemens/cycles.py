@@ -57,6 +57,7 @@ class Drilling:
     own_feed  it has feeds of its own: behind one that is read which is in force is not known
     kept      the call, where it stays as it stands: it ends at the level of its one step, if any
     ground    how deep that goes, where it bores and that is known
+    of_before it stays, and drills at the feed before it alone: that is in force behind it too
     cuts      it stays, and moves in the plane as well, where no manual tells
     """
 
@@ -66,6 +67,12 @@ class Drilling:
     kept: str = ""
     cuts: bool = False
     ground: str = ""
+    of_before: bool = False
+
+
+ONE_FEED = frozenset(("CYCLE81", "CYCLE82", "CYCLE87", "CYCLE88", "CYCLE89"))
+FRF = 10
+"""The argument of CYCLE83 that slows its first stroke."""
 
 
 class CycleError(Exception):
@@ -113,7 +120,13 @@ def kept_hole(name: str, given: Sequence[str], axis: str, text: str, deep: bool)
         raise CycleError("what stands behind its axis is not known")
     own_feed = name == "CYCLE84"
     ground = _ground(values, values[plane + 1] if plane else "") if deep else ""
-    return Drilling(axis, (("", _number(given[0], "RTP"), ""),), own_feed, text, ground=ground)
+    out = (("", _number(given[0], "RTP"), ""),)
+    return Drilling(axis, out, own_feed, text, False, ground, _at_one_feed(name, values))
+
+
+def _at_one_feed(name: str, values: Sequence[str]) -> bool:
+    """Whether a cycle has no feed among its arguments but a factor (FRF) of 1."""
+    return name in ONE_FEED or (name == "CYCLE83" and values[FRF] in ("", "0", "1"))
 
 
 def _ground(values: Sequence[str], mode: str) -> str:

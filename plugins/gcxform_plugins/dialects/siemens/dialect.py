@@ -72,7 +72,7 @@ kept as it stands, with all that is lost behind it.
 | G60, G9 | exact stops | [K] |
 | G64, G641 to G645 | corners are rounded: G64, however far | [K] |
 | G601 to G603, ADIS | how far: left out | [K] |
-| SOFT, BRISK, FFWON, COMPCAD ... | how fast, and how smooth: left out | [K] |
+| SOFT, BRISK, FFWON, COMPCAD, DYNFINISH ... | how fast, and how smooth: left out | [K] |
 | CYCLE832 | left out, with names as `_FINISH`, and with digits | PM 1108 |
 | that with two values, and a ten | older cycles switch TRAORI: refused | [K] |
 | GROUP_BEGIN, GROUP_END, WORKPIECE | left out: they are for the screen | |
@@ -165,6 +165,7 @@ By passes that change positions (`volumetric`, `cutter-comp`) of these only such
 | what stays | what is known behind it |
 |---|---|
 | CYCLE84, 840, 86, 87, 88, and 81 to 89 as they are not read; with MCALL too | it ends at RTP |
+| the feed behind 81, 82, 83 with FRF of 1, 87, 88, 89 | that before them |
 | those, behind a rapid that no pass corrects (Z is not known) | refused |
 | those, deep enough to lean by more than `lean`; AMODE of ones other than 0 and 2 | refused |
 | POCKET, SLOT, LONGHOLE, CYCLE60 to 64, 70 to 79, 802, 899 | X, Y and F are lost, or Z as well |

@@ -34,7 +34,8 @@ TURNS = re.compile(
 )
 """The spindle turns to an angle: it may be one of the rotary axes."""
 TO_POINTS = re.compile(
-    rf"G7[45](?:[ \t]+FP{IS}[ \t]*[1-4])?(?:[ \t]*([XYZABC])(?:1?{IS})?[ \t]*0)+", re.IGNORECASE
+    rf"G7[45](?=.*[XYZABC])(?:[ \t]+FP{IS}[ \t]*[1-4]|[ \t]*[XYZABC](?:1?{IS})?[ \t]*0)+",
+    re.IGNORECASE,
 )
 """G74 and G75: axes go to reference points and fixed points of the machine (PM 683, 397)."""
 NAMED = re.compile(r"[XYZABC](?=1?[ \t]*=|[ \t]*0)", re.IGNORECASE)
