@@ -260,6 +260,15 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 VOLUMETRIC = f"volumetric model={MODEL} outside=clamp"
+
+
+def test_a_tool_by_its_name_is_no_number_of_a_machine_file(here: Path) -> None:
+    """What the control calls by its name has no number; and whole numbers have no exponent."""
+    program = 'G710 G17 G90 G94\nT="MILL" M6\nG54\nS100 M3\nG0 X0 Y0\nD1 Z50\nM30\n'
+    assert "[tool." not in asked_of(here, "siemens", program, VOLUMETRIC)
+    assert "[tool.1234567]" in asked_of(here, "fanuc", "G21 G90 G54\nG43 H1234567 Z9.\nM30\n")
+
+
 HEAD = "%\nO1\nG21 G90 G94 G17 G54\n"
 
 

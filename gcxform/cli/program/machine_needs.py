@@ -14,6 +14,7 @@ from gcxform.contract.own_codes import may_be_said
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.dialect import EXTRUDER, LINEAR, Dialect
 from gcxform.flow.straightened import written_out
+from gcxform.flow.tool_names import MADE_UP
 from gcxform.machine.control import COMP_CORNERS, COMP_ENTRY, HOME, WORK_OFFSET
 from gcxform.machine.control import INERT as INERT_M
 from gcxform.modal.meaning.calls import NUMBERED
@@ -146,8 +147,8 @@ def _look_into_spindle(used: Used, source: Source, dialect: type[Dialect]) -> No
             selected = block.value(slots["T"]) if "T" in slots else selected
             spindle = selected if block.meaning.changes_tool else spindle
             for asked, places in zip(asks[number], (used.radii, used.lengths), strict=True):
-                if asked and spindle > 0:
-                    places.setdefault(f"{spindle:g}", block.place)
+                if asked and 0 < spindle < MADE_UP:
+                    places.setdefault(f"{spindle:.0f}", block.place)
 
 
 def _takes_no_h(meaning: Meaning) -> bool:
@@ -206,8 +207,8 @@ def _look(used: Used, dialect: type[Dialect], block: _Block) -> None:
     for act in meaning.acts:
         _act(used, dialect, act, block)
     number = block.value(meaning.slots["D"]) if "D" in meaning.slots else 0.0
-    if meaning.compensates and not meaning.is_length("D") and number > 0:
-        used.radii.setdefault(f"{number:g}", block.place)
+    if meaning.compensates and not meaning.is_length("D") and 0 < number < MADE_UP:
+        used.radii.setdefault(f"{number:.0f}", block.place)
     rule = dialect.cutter_comp
     if meaning.compensates and "G41" in dialect.codes:
         for setting, known in ((COMP_CORNERS, rule.corners), (COMP_ENTRY, rule.entry)):
@@ -228,11 +229,11 @@ def _act(used: Used, dialect: type[Dialect], act: Act, block: _Block) -> None:
         name += "".join(named)
         if WORK_OFFSET.fullmatch(name):
             used.offsets.setdefault(name, block.place)
-    elif act.name in LENGTHS and words.get("H", 0.0) > 0:
-        used.lengths.setdefault(f"{words['H']:g}", block.place)
+    elif act.name in LENGTHS and 0 < words.get("H", 0.0) < MADE_UP:
+        used.lengths.setdefault(f"{words['H']:.0f}", block.place)
         used.length_alone |= dialect.tool_rule.length_may_move and "Z" not in block.meaning.axes
     elif act.name == "offset-of-tool":
-        used.lengths.setdefault(f"{words['T']:g}", block.place)
+        used.lengths.setdefault(f"{words['T']:.0f}", block.place)
     elif act.name == "home":
         name = act.code + (f" P{words['P']:.0f}" if "P" in words else "")
         if not HOME.fullmatch(name):
