@@ -1431,6 +1431,21 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain-title-with-steps]",
     ),
     Mutation(
+        "klartext: rotary axes stand as before behind any preset",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        "self.lose(LINEAR if told else None)",
+        "self.lose(LINEAR)",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/preset-loses-turns]",
+    ),
+    Mutation(
+        "klartext: END PGM goes back behind CALL LBL",
+        "plugins/gcxform_plugins/dialects/heidenhain/klartext.py",
+        "        while self.calls and self.calls[-1].lines is None:\n",
+        "        if self.calls and self.calls[-1].lines is None:\n            self.go_back()\n"
+        "            return []\n        while self.calls and self.calls[-1].lines is None:\n",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/ends-in-a-subprogram]",
+    ),
+    Mutation(
         "klartext: IX of a shift counts from where an axis stands",
         "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
         "(?:CYCLE?[ \\t]+DEF|TRANS)(?![A-Z])",

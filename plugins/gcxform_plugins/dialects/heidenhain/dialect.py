@@ -56,6 +56,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | CALL LBL n | to LBL 0; 8 deep | TNC 370, p. 6-9 |
 | LBL 0 to which no call has led | passed over, which the certificate says | a simulator |
 | END PGM | ends the program, as M2 and M30 do | [K] |
+| that, behind a label that CALL LBL has led to | the same, if nothing stands between | a shop |
 | cycle 7 | the zero is elsewhere, by axes; `IX` adds to its shift; tables: refused | TNC 426, 640 |
 | TRANS DATUM | as cycle 7; not beside it | TNC7, D6 of the facts |
 | cycle 10, TRANS ROTATION | X and Y are turned about the zero; `IROT` adds | TNC 320, p. 258 |
@@ -73,6 +74,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
 | the place of G54 beside it | refused, but for `[control] preset` of that number | [K] |
+| rotary axes behind that one | stand where they did: `start` counts from it as well | |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
 | holes of other controls, in mm | cycle 200 in one stroke, called by M99 | `drilling.py` |

@@ -43,6 +43,9 @@ ONE_LINE = re.compile(
 COMMENT = re.compile(r"[\s\d]*;")
 UNNUMBERED = re.compile(r"\s*[^\s\d;]")
 LBL_0 = "write LBL 0 where it ends, behind what it does"
+ENDS_ALL = "END PGM behind a label that nothing stands behind ends the program"
+NOTHING = re.compile(r"[\s\d/]*(?:[;*].*)?")
+"""A line that does nothing."""
 LONGEST_TOOL = 9  # digits
 RADIUS = "Q108"
 RADIUS_TOLD = "Q108 is the radius of the tool in the machine file, and DR of TOOL CALL"
@@ -180,11 +183,14 @@ class Klartext(Planes):
         match = END.fullmatch(item.name)
         if match is None or (match[1] and (match[1] == "INCH") != self.inch):
             raise self.refusal("GX101", "this is not the END PGM of this program", item)
-        if self.calls and self.calls[-1].lines is not None:
+        while self.calls and self.calls[-1].lines is None:
+            if not all(map(NOTHING.fullmatch, self.lines[self.calls[-1].first + 1 : self.line])):
+                raise self.refusal("GX223", "a subprogram does not end with LBL 0", item, LBL_0)
+            self.assumed[ENDS_ALL] = None
+            self.go_back()
+        if self.calls:
             self.go_back()
             return []
-        if self.calls:
-            raise self.refusal("GX223", "a subprogram does not end with LBL 0", item, LBL_0)
         self.over = True
         return ["M2"]
 
