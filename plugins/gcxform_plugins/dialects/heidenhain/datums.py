@@ -234,5 +234,5 @@ class Datums(Parameters):
         self.counts_from = number
         if number:
             self.assumed[PRESET.format(exact(number))] = None
-        self.lose()
+        self.lose(LINEAR if told else None)
         return [*self.along("CYCL DEF 247 DATUM SETTING ~"), *self.along(f" Q339=+{exact(number)}")]

@@ -10,6 +10,7 @@ from typing import NoReturn
 import gcxform as gx
 from gcxform_plugins.dialects.heidenhain.cycles import Cycles
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
+from gcxform_plugins.dialects.heidenhain.words import ROTARY
 
 NULL = r"[+-]?(?:0+(?:[.,]0*)?|[.,]0+)"
 UNTILTED = re.compile(
@@ -54,5 +55,6 @@ class Planes(Cycles):
         known = axes and not open_
         places = ", ".join(f"{axis} = 0" for axis in axes or "AC")
         why = "an axis is turned" if known else "whether an axis is turned is not known"
-        hint = () if known or self.moved.intersection(open_) else (STARTS.format(places),)
+        told = known or {*self.moved, *self.lost}.intersection(open_ or ROTARY)
+        hint = () if told else (STARTS.format(places),)
         self.refuse(f"{item.name.strip()[:40]}: {why}", item, *hint)
