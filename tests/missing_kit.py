@@ -22,6 +22,7 @@ ANSWERS: dict[str, Any] = {
     "orientation-path": "angles",
     "edge-after-tool-change": 1,
     "preset": 2,
+    "inert-cycle": 392,
     "units": "mm",
     "argument-list": "II",
     "tip-at-start": "off",

@@ -1438,6 +1438,20 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain/preset-loses-turns]",
     ),
     Mutation(
+        "klartext: a machine file says of a cycle of the control that it moves nothing",
+        "plugins/gcxform_plugins/dialects/heidenhain/builders.py",
+        "return number in BUILDERS and number",
+        "return number",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/builders-cycle-not-his]",
+    ),
+    Mutation(
+        "klartext: a call behind a cycle of the builder is of the cycle before",
+        "plugins/gcxform_plugins/dialects/heidenhain/cycles.py",
+        "            first, self.cycle = self.line, 0\n",
+        "            first = self.line\n",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/builders-cycle-called]",
+    ),
+    Mutation(
         "klartext: END PGM goes back behind CALL LBL",
         "plugins/gcxform_plugins/dialects/heidenhain/klartext.py",
         "        while self.calls and self.calls[-1].lines is None:\n",

@@ -8,6 +8,7 @@ from decimal import Decimal
 from typing import Any
 
 import gcxform as gx
+from gcxform_plugins.dialects.heidenhain import builders
 from gcxform_plugins.dialects.heidenhain.datums import VALUE
 from gcxform_plugins.dialects.heidenhain.holes import (
     HOLES,
@@ -81,9 +82,13 @@ class Cycles(KeptCycles):
             return self._pattern(item, number, self._parameters(item, text))
         if number == 1:
             return self._peck(item, part, text)
-        why = OTHERS.get(number, "a cycle of the control")
-        name = QUANTITY.split(text)[0].strip()
-        self.refuse(f"CYCL DEF {number} {name}".rstrip() + f" is {why}", item)
+        if builders.said_inert(number, self.reading.control):
+            first, self.cycle = self.line, 0
+            self._parameters(item, text)
+            return self.all_along(*builders.said_again(self.lines[first : self.at]))
+        why = OTHERS.get(number, builders.whose(number))
+        what = f"CYCL DEF {number} {QUANTITY.split(text)[0].strip()}".rstrip()
+        self.refuse(f"{what} is {why}", item, *builders.ways_out(number))
 
     def _call(self, item: gx.Item) -> list[str]:
         """CYCL CALL: the cycle where the tool stands, or at the places of PATTERN DEF."""

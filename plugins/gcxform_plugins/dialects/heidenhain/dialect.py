@@ -83,6 +83,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | cycles 201, 203, 240, 220, 221 | as `holes.py` says; several rows, Q301=0: refused | 640, p. 162 |
 | PATTERN DEF POS, CYCL CALL PAT FMAX | the places in their order; from Q203 + Q204 only | 640 |
 | other patterns, CYCL CALL POS, PAT with F | refused | |
+| cycles 300 to 399 | of the builder: refused, but for `[control] inert-cycle` of that number | |
 | other cycles | refused | |
 | Q, QL, QR | known once the program has set them; Q100 to Q199 are the control's | 620, p. 285 |
 | Q108 | the radius of the tool in the machine file, with DR | 530 49x-03, p. 612 |
@@ -158,6 +159,7 @@ class Heidenhain(gx.Dialect):
     block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True))
     settings = (
         gx.NumberSetting("preset", "heidenhain: which preset of cycle 247 G54 of this file is"),
+        gx.NumberSetting("inert-cycle", "heidenhain: which of cycles 300 to 399 moves no axis"),
     )
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))
     numbers = gx.NumberFormat(mm=4, inch=5, angle=4)
