@@ -151,6 +151,13 @@ MUTATIONS = (
         "tests/test_subprogram_alone.py::test_where_it_leaves_its_caller_is_read_again",
     ),
     _flow(
+        "an axis that a subprogram loses away from its command is not looked at",
+        "gcxform/pipeline/at_call.py",
+        "if int(lost[last]) >> axis & 1 else np.nan",
+        "if False else np.nan",
+        "tests/test_corpus.py::test_case[bad/gx226-other-zero]",
+    ),
+    _flow(
         "the work offset of a caller is taken for the first one",
         "gcxform/pipeline/subprogram.py",
         "OF_PLACES if plan.marks(run.given).changes else {}",

@@ -319,7 +319,7 @@ class Lines(CallsKept):
         """Yield CC and CP, whose circle goes through the words of its end."""
         whole, start = self._whole(ends), self._stands()
         words = worded({a: v for a, v in ends.items() if a not in "XY"}, "I" if self.steps else "")
-        self._stand({axis: ends.get(axis, self._still(axis)) for axis in (*"XY", *ends)})
+        self._stand({axis: self._still(axis) for axis in "XY"} | ends)
         end = start if whole else self._stands()
         centre, left = (pole["X"], pole["Y"]), self.motion == "G3"
         short = abs(turned(start, end, centre, left, turns)) <= HALF
