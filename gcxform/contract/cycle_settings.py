@@ -24,7 +24,7 @@ def with_cycle_settings(
     rule = dialect.cycle_rule
     if rule is None:
         return dialect
-    stay = rule.keeps_words and LEVELS in control
+    stay = rule.stays.words and LEVELS in control
     count = str(control.get(REPEATS, "")) if rule.repeats == "K" else ""
     return _with(cast(Any, dialect), stay, count) if stay or count else dialect
 
@@ -35,5 +35,5 @@ def _with(dialect: Any, stay: bool, count: str) -> type[Dialect]:
     if count:
         cycles = {n: replace(c, takes=c.takes.replace("K", count)) for n, c in rule.cycles.items()}
         rule = replace(rule, cycles=cycles, repeats=count)
-    own = {"cycle_rule": replace(rule, levels_stay=stay)}
+    own = {"cycle_rule": replace(rule, stays=replace(rule.stays, levels=stay))}
     return cast("type[Dialect]", type(dialect.__name__, (dialect,), own))

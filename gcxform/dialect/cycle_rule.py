@@ -96,6 +96,23 @@ class Cycle:
     xy_only: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Staying:
+    """Which words of a canned cycle stay in force.
+
+    words   R, Z, P, Q stay when another cycle is programmed; otherwise they must be given. Where no
+            P has been, how long it dwells is not known, and its block stays
+    levels  R and Z that were given in G90 stay levels behind a G91; otherwise, and where distances
+            are in force behind a G90, what they are is not known
+    dwell   the last P stays for good, for cycles that take P but do not need it; 0 s before the
+            first one of the program
+    """
+
+    words: bool = False
+    levels: bool = False
+    dwell: bool = False
+
+
 @dataclass(frozen=True)
 class CycleRule:
     """The canned cycles of a control.
@@ -106,12 +123,7 @@ class CycleRule:
     rises_first     from below R the tool rises to R before it goes to the hole; the initial level
                     then counts as R. Under G98 it goes to the next hole at the initial level, from
                     wherever it stands at or below R
-    keeps_words     R, Z, P, Q stay when another cycle is programmed; otherwise they must be given.
-                    Where no P has been, how long it dwells is not known, and its block stays
-    levels_stay     R and Z that were given in G90 stay levels behind a G91; otherwise, and where
-                    distances are in force behind a G90, what they are is not known
-    keeps_dwell     the last P stays for good, for cycles that take P but do not need it; 0 s before
-                    the first one of the program
+    stays           which words of a cycle stay
     stores          a block without X, Y, Z, R, or with no repeats, stores words and drills nothing;
                     otherwise it is refused
     alone           the setting of the control that says "drills" if a block drills which names no
@@ -130,9 +142,7 @@ class CycleRule:
     peck_return: float | None = None
     peck_clearance: float | None = None
     rises_first: bool = False
-    keeps_words: bool = False
-    levels_stay: bool = False
-    keeps_dwell: bool = False
+    stays: Staying = Staying()
     stores: bool = False
     alone: str = ""
     turns: bool = False

@@ -226,7 +226,7 @@ MUTATIONS = (
     Mutation(
         "cycles: R of G90 is a distance in G91 where levels stay",
         STRETCH,
-        "return in_g91 if rule.levels_stay else",
+        "return in_g91 if rule.stays.levels else",
         "return",
         "tests/test_corpus.py::test_case[dialects/fanuc/levels-in-steps]",
     ),

@@ -1424,11 +1424,18 @@ MUTATIONS = (
         "tests/test_corpus.py::test_case[dialects/heidenhain-tcpm-vector-stays]",
     ),
     Mutation(
-        "klartext: the text of a structure block is a step",
+        "klartext: a helix asks where axes that have words stood",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        '{axis: self._still(axis) for axis in "XY"} | ends',
+        '{axis: self._still(axis) for axis in (*"XY", *ends)} | ends',
+        "tests/test_corpus.py::test_case[dialects/heidenhain/helix-from-the-machine]",
+    ),
+    Mutation(
+        "klartext: the steps of a shift are those of where an axis stands",
         "plugins/gcxform_plugins/dialects/heidenhain/programs.py",
         " and not NO_STEPS.match(line)",
         "",
-        "tests/test_corpus.py::test_case[dialects/heidenhain-title-with-steps]",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/steps-of-shifts]",
     ),
     Mutation(
         "klartext: rotary axes stand as before behind any preset",

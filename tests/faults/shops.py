@@ -108,14 +108,14 @@ FAULTS = (
     (
         "a cycle that dwells nobody knows how long is written out",
         "gcxform/modal/cycles/checks.py",
-        'letter == "P" and rule.keeps_words and self.open_pecks',
-        'letter == "P" and rule.keeps_words',
+        'letter == "P" and rule.stays.words and self.open_pecks',
+        'letter == "P" and rule.stays.words',
         f"{CASE}[dialects/haas/cycle-without-dwell-written-out]",
     ),
     (
         "a cycle without P is refused where it stays",
         "gcxform/modal/cycles/checks.py",
-        '            missing &= not (letter == "P" and rule.keeps_words and self.open_pecks)\n',
+        '            missing &= not (letter == "P" and rule.stays.words and self.open_pecks)\n',
         "",
         f"{CASE}[dialects/haas/cycle-without-dwell]",
     ),

@@ -133,7 +133,7 @@ class Checks:
             if letter == "Q":  # some controls peck by I, J and K as well
                 others = self._listed(lambda one: one.open_words, "I")
                 missing &= np.isnan(self.words["i"]) | ~others
-            missing &= not (letter == "P" and rule.keeps_words and self.open_pecks)
+            missing &= not (letter == "P" and rule.stays.words and self.open_pecks)
             yield missing, f"{{code}} without {letter}", "give it in this block"
         yield calls.p < 0, "{code} with a negative P", ""
         pecks = self._with_code([code for code, one in self.cycles.items() if one.pecks])
@@ -152,12 +152,12 @@ class Checks:
         for name, letter in (("r", "R"), ("normal", normal)):
             missing = drilled & np.isnan(self.words[name])
             yield missing, f"{{code}} without {letter}", "give it in this block"
-            if self.rule.keeps_words:
+            if self.rule.stays.words:
                 mixed = drilled & (stretch.in_g91[name] != calls.incremental)
                 message = f"{{code}} with {letter} in force from before a G90 or G91"
                 again = "give it again in this block"
                 yield mixed & ~calls.incremental, message, again
-                if not self.rule.levels_stay:
+                if not self.rule.stays.levels:
                     yield mixed, message, f"{again}, or say {LEVELS_STAY}"
         unknown = drilled & np.isnan(stretch.initial)
         hint = (

@@ -143,7 +143,7 @@ def steps_of(calls: Calls, in_g91: Mapping[str, Flags], rule: CycleRule) -> Mapp
 
     `in_g91` is as in `Stretch`.
     """
-    return in_g91 if rule.levels_stay else dict.fromkeys(in_g91, calls.incremental)
+    return in_g91 if rule.stays.levels else dict.fromkeys(in_g91, calls.incremental)
 
 
 def joined(stretches: Sequence[Stretch]) -> Stretch:
@@ -200,7 +200,7 @@ class _Follower:
         self.starts, self.positions, self.dwells = starts, positions, dwells
         self.many = len(starts) > 1
         self.fresh: Flags | None = None
-        if not rule.keeps_words or self.many:
+        if not rule.stays.words or self.many:
             fresh = calls.code != np.append(mode.code, calls.code[:-1])
             fresh[starts[1:]] = True
             self.fresh = fresh if fresh.any() else None
@@ -279,7 +279,7 @@ class _Follower:
     def _incremental(self, name: str) -> Flags:
         """Return whether the word in force was given in G91."""
         before = self.mode.incremental.get(name, False)
-        if not self.rule.keeps_words:
+        if not self.rule.stays.words:
             return constant(before, len(self.calls), np.bool_)
         given = ~np.isnan(getattr(self.calls, name))
         if not self.many:
@@ -291,7 +291,7 @@ class _Follower:
     def _dwell(self, programmed: Floats) -> Floats:
         """Return how long each call dwells where its cycle does."""
         given = self.calls.p
-        if self.rule.keeps_dwell:
+        if self.rule.stays.dwell:
             return self._filled(given, ~np.isnan(given), self.dwells)
         return np.where(np.isnan(programmed), 0.0, programmed)
 

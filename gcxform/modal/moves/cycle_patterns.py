@@ -200,7 +200,7 @@ class Drilling:
         zero = frame.shift[normal], frame.origin[normal], frame.matrix
         other = self.cycles.mode.code and zero != self.cycles.zero
         self.cycles.zero = zero
-        if not (other and self.cycles.rule.keeps_words):
+        if not (other and self.cycles.rule.stays.words):
             return
         for line in np.flatnonzero(self.columns.common.initial[first:last])[:1].tolist():
             message = "another work offset or G28 within a cycle: the level of G98 is not certain"

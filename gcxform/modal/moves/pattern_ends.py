@@ -53,7 +53,7 @@ def pattern_ends(columns: CallColumns, borders: Sequence[tuple[int, int]]) -> di
     words = zip(*(_said(columns, axis, first, last - 1) for axis in "XYZ"), strict=True)
     called = columns.last_drilled[last - 1]
     rule = columns.lines.dialect.cycle_rule
-    stay = rule is not None and rule.levels_stay
+    stay = rule is not None and rule.stays.levels
     of = (
         _said(columns, "P", first, last - 1).tolist(),
         (called >= first).tolist(),

@@ -126,7 +126,7 @@ FILES = gx.LookupRule(
     by_name=True,
 )
 TOOL_TABLE = frozenset((1, 10, 11, 12, 13))
-CYCLE_RULE = v.CycleRule(CYCLES, keeps_words=True, stores=True, turns=True, repeats="K")
+CYCLE_RULE = v.CycleRule(CYCLES, stays=v.Staying(words=True), stores=True, turns=True, repeats="K")
 
 
 class Fanuc(gx.Dialect):

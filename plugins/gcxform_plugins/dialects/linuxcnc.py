@@ -101,7 +101,7 @@ CYCLE_RULE = v.CycleRule(
     peck_return=0.254,
     peck_clearance=0.254,
     rises_first=True,
-    keeps_dwell=True,
+    stays=v.Staying(dwell=True),
     one_plane=False,
     initial_level=False,
 )
