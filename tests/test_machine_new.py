@@ -293,7 +293,7 @@ def test_letters_of_words_are_no_axes(here: Path) -> None:
 
 @pytest.mark.parametrize("dialect", ["masso", "uccnc"])
 def test_where_a_cycle_that_stays_ends_is_no_question(here: Path, dialect: str) -> None:
-    cycle = "G0 X0 Y0 Z9\nG83 X1 Y1 Z-9 R2 Q3 F99\nG80\nG91 G0 X3\nG1 Y3\nM30\n"
+    cycle = "G0 X0 Y0 Z9\nG83 X1 Y1 Z-9 R2 Q3 F99\nG80\nG1 X5\nG2 X7 Y3 R4\nM30\n"
     asked = asked_of(here, dialect, "G21 G90 G94 G17 G54\n" + cycle)
     assert "macro" not in asked
 
