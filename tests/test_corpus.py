@@ -209,6 +209,28 @@ class Forgetful(gx.Pass):
 
 
 @dataclass(frozen=True)
+class Astray(gx.Pass):
+    """Measures more than it promises, which no comparison of what is written shows."""
+
+    name = "astray"
+    kind: str = "deviation"
+
+    @property
+    def promise(self):
+        return 0.001
+
+    @property
+    def demands(self):
+        return gx.Demands(promise_angle=0.01, deviates={self.kind: "off"})
+
+    def apply(self, path, context):
+        return path
+
+    def measure(self, before, after, context):
+        return {"off": 0.02}
+
+
+@dataclass(frozen=True)
 class Careless(gx.TextPass):
     """Drop the first word of every block."""
 
@@ -226,6 +248,12 @@ def chain(step):
 def test_a_pass_that_does_not_ensure_what_it_says():
     with pytest.raises(gx.VerificationError, match="GX602"):
         chain(Forgetful()).run(b"G20 G90\nG0 X1.\n", verify="full")
+
+
+@pytest.mark.parametrize("kind", ["deviation", "angle"])
+def test_a_pass_that_measures_more_than_it_promises(kind):
+    with pytest.raises(gx.VerificationError, match=r"GX602.*promises 0\.0+1 .*measures 0\.02"):
+        chain(Astray(kind)).run(b"G21 G90\nG0 X1.\n", verify="full")
 
 
 def test_a_text_pass_that_changes_words():

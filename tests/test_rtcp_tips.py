@@ -12,7 +12,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
-from rtcp_kit import ROUNDED, between, chain_of_kind, machine_text, pipeline, positions, program
+from rtcp_kit import (
+    ROUNDED,
+    SEGMENT,
+    between,
+    chain_of_kind,
+    machine_text,
+    pipeline,
+    positions,
+    program,
+)
 from rtcp_kit import tips as tips_of
 from test_rtcp import FORMS, ROOM
 
@@ -119,6 +128,16 @@ def test_where_blocks_end(tmp_path, code):
     old, new = positions(text, "XYZAC"), positions(result.text, "XYZAC")
     far = np.linalg.norm(tips_of(chain, old[-1:]) - new[-1:, :3])
     assert 0.005 < far <= 0.05
+
+
+@pytest.mark.parametrize("kind", FORMS)
+def test_what_is_measured_where_lines_are_cut_before(tmp_path, kind):
+    """Pieces of a line that a step before has cut are compared each with its own piece."""
+    chain = chain_of_kind(kind, 5)
+    text = program(poses_of(90.0, 30.0), ("X", "Y", "Z", *chain.letters), feed="F2.")
+    steps = steps_of(tmp_path, kind, chain, 4, before=SEGMENT + 'max-length = "7 mm"\n')
+    result = steps.run(text, "full")
+    assert 0.0 < result.certificate.measured["tip off, mm"] <= TOLERANCE
 
 
 @pytest.mark.parametrize("decimals", [2, 3])

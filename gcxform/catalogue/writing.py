@@ -171,7 +171,8 @@ CODES: dict[str, tuple[str, str]] = {
     ),
     "GX602": (
         "A pass does not keep what it promises",
-        "A pass says that its output has a property, and the path it returned does not have it. "
+        "A pass says that its output has a property, and the path it returned does not have it; or "
+        "it measures that it deviates by more than it promises. "
         "Nothing was written. This is a bug of the pass: report it to the author of the plugin, "
         "see `gcxform list passes`.",
     ),

@@ -21,6 +21,7 @@ from gcxform.modal.reader import Apart, WindowReader
 from gcxform.pipeline.blind_moves import check_blind
 from gcxform.pipeline.called_files import not_done_yet
 from gcxform.pipeline.cutter_comp import check_compensated
+from gcxform.pipeline.kept_promises import check_ensured, check_promised
 from gcxform.pipeline.leaving import NOTHING, Leaving
 from gcxform.pipeline.mixed_feeds import check_mixed
 from gcxform.pipeline.output import Output
@@ -374,17 +375,16 @@ class Run:
             after = step.apply(path, self.plan.context)
             if not step.demands.resolves:
                 check_compensated(step, path, after)
-        for what, size in step.measure(path, after, self.plan.context).items():
+        found = step.measure(path, after, self.plan.context)
+        check_promised(step, found)
+        for what, size in found.items():
             self.measured[what] = max(size, self.measured.get(what, size))
         for what, number in step.added(path, after, self.plan.context).items():
             self.added[what] = self.added.get(what, 0) + number
         if self.plan.told is not None:
             self._tell(step.name, changed_lines(path, after))
         if self.verify == "full":
-            for fact in step.ensures:
-                if not fact.check(after):
-                    message = f"{step.name} ensures {fact.name}, and the path does not have it"
-                    raise VerificationError.one("GX602", message)
+            check_ensured(step, after)
         return after
 
     def check_growth(self, out: Output) -> None:

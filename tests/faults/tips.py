@@ -62,4 +62,18 @@ MUTATIONS = (
         "        angles = self.place.angles(here)\n        return here[:, :3] * 1.001,",
         WITHIN,
     ),
+    Mutation(
+        "tips: what is measured takes pieces of one line for one",
+        CONVERSION,
+        "if not _other(before).all():",
+        "if False:",
+        f"{TESTS}::test_what_is_measured_where_lines_are_cut_before",
+    ),
+    Mutation(
+        "a step measures more than it promises",
+        "gcxform/pipeline/kept_promises.py",
+        "if name in measured and not measured[name] <= bound + EQUAL:",
+        "if name in measured and not measured[name] <= 1e9 * bound:",
+        "tests/test_corpus.py::test_a_pass_that_measures_more_than_it_promises",
+    ),
 )

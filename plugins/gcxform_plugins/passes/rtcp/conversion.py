@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 import gcxform as gx
-from gcxform.vocabulary import Ints
+from gcxform.vocabulary import Flags, Ints
 from gcxform_plugins.passes.rtcp.forward.cutting import Cutting
 from gcxform_plugins.passes.rtcp.measured import AXIS_OFF, TIP_OFF
 from gcxform_plugins.passes.rtcp.options import Options
@@ -63,8 +63,13 @@ class Conversion(gx.Pass):
 
     # --- tips of programs in axes, which no comparison of axes shows ---
 
-    def followed(self, cutting: Cutting) -> gx.Toolpath:
+    def cutting(self, path: gx.Toolpath, context: gx.PassContext) -> Cutting:
+        """Return the work on a path whose tips are compared."""
+        raise NotImplementedError
+
+    def followed(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path that is cut, its tips compared. Raises VerificationError."""
+        cutting = self.cutting(path, context)
         path, row = cutting.run()
         self._tips(cutting.path, path, cutting.context, row).check_tips()
         return path
@@ -85,9 +90,14 @@ class Conversion(gx.Pass):
     def tip_off(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
     ) -> dict[str, float]:
-        """Return how far the tip is off where axes are compared; pieces stand behind their rows."""
-        begins = (np.diff(after.source) != 0) | (np.diff(after.nth) != 0)
-        proof = self._tips(before, after, context, np.append(0, np.cumsum(begins)))
+        """Return how far the tip is off where axes are compared; pieces stand behind their rows.
+
+        Rows that a step before has cut of one have its place: which piece is whose is cut anew.
+        """
+        owner = np.append(0, np.cumsum(_other(after)))
+        if not _other(before).all():
+            owner = self.cutting(before, context).run()[1]
+        proof = self._tips(before, after, context, owner)
         proof.run()
         return {TIP_OFF: proof.tip}
 
@@ -108,6 +118,11 @@ class Conversion(gx.Pass):
         found = {TIP_OFF: proof.tip, AXIS_OFF: proof.lean} | proof.measured()
         corrected = {"angles corrected by, degrees": proof.turn}
         return found | corrected if proof.options.corrects else found
+
+
+def _other(path: gx.Toolpath) -> Flags:
+    """Return which rows (n - 1,) are another move of the program than the one before."""
+    return np.asarray((np.diff(path.source) != 0) | (np.diff(path.nth) != 0))
 
 
 def check_angles(machine: gx.Machine, wraps: bool) -> None:

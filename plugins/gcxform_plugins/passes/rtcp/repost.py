@@ -100,11 +100,15 @@ class Repost(Conversion):
         """Return the path of the axes of the calibrated machine."""
         if not len(path) or self._nothing_to_correct(context):
             return path
-        nominal, axes = self.places(path, context)
         if self._turns_anew:
-            return Correcting(self.options(context), path, context, nominal, axes).run()[0]
-        way = Corrected(nominal, axes)
-        return self.followed(Cutting(self.options(context), path, context, nominal, way))
+            places = self.places(path, context)
+            return Correcting(self.options(context), path, context, *places).run()[0]
+        return self.followed(path, context)
+
+    def cutting(self, path: gx.Toolpath, context: gx.PassContext) -> Cutting:
+        """Return the work on a path whose angles are kept."""
+        nominal, axes = self.places(path, context)
+        return Cutting(self.options(context), path, context, nominal, Corrected(nominal, axes))
 
     def _nothing_to_correct(self, context: gx.PassContext) -> bool:
         """Whether the calibrated machine is where the one posted for is."""

@@ -41,11 +41,12 @@ class ToTip(Conversion):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the path of the tips for one of axes."""
-        if not len(path):
-            return path
+        return self.followed(path, context) if len(path) else path
+
+    def cutting(self, path: gx.Toolpath, context: gx.PassContext) -> Cutting:
+        """Return the work on a path, which makes tips of axes."""
         place = Place(path, context)
-        way = Between(place, to_axes=False)
-        return self.followed(Cutting(self.options(context), path, context, place, way))
+        return Cutting(self.options(context), path, context, place, Between(place, to_axes=False))
 
     def measure(
         self, before: gx.Toolpath, after: gx.Toolpath, context: gx.PassContext
