@@ -95,6 +95,7 @@ from gcxform.machine.chain import Chain as Chain
 from gcxform.machine.chain import Rotary as Rotary
 from gcxform.machine.chain import chain_of as chain_of
 from gcxform.machine.control import NumberSetting as NumberSetting
+from gcxform.machine.control import NumbersSetting as NumbersSetting
 from gcxform.machine.control import Setting as Setting
 from gcxform.machine.formats import ControlFiles as ControlFiles
 from gcxform.machine.inverse import Attitudes as Attitudes

@@ -21,7 +21,7 @@ ANSWERS: dict[str, Any] = {
     "basic-frames": "none",
     "orientation-path": "angles",
     "edge-after-tool-change": 1,
-    "preset": 2,
+    "presets": [2],
     "inert-cycle": 392,
     "units": "mm",
     "argument-list": "II",

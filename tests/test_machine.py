@@ -302,3 +302,18 @@ def test_a_tool_table_that_is_not_there(tmp_path: Path) -> None:
     (tmp_path / "tool.tbl").unlink()
     with pytest.raises(FileError, match="cannot read"):
         loaded(file)
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [("2", "a list of whole"), ("[-2]", "a whole"), ("[2, 2]", "each number once")],
+)
+def test_a_list_of_numbers(tmp_path, said, message):
+    """Such as the presets of a TNC: each of them is one place of its list."""
+    file = tmp_path / "m.toml"
+    file.write_text("format = 1\n[control]\npresets = [20, 22]\n")
+    assert default_registry().dialects["heidenhain"].settings  # which declare it
+    assert load_machine(file).control == {"presets 20": 0, "presets 22": 1}
+    file.write_text(f"format = 1\n[control]\npresets = {said}\n")
+    with pytest.raises(UsageError, match=rf"GX405.*presets: expected {message}"):
+        load_machine(file)

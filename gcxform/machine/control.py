@@ -71,6 +71,10 @@ class Setting:
         assert isinstance(raw, str | float | int)
         return raw
 
+    def told(self, raw: object) -> dict[str, str | float]:
+        """Return what is known by it, by name; ValueError for what says nothing."""
+        return {self.name: self.read(raw)}
+
     def schema(self) -> dict[str, Any]:
         """Return its JSON Schema."""
         length = quantity_schema(LENGTH) | {"minimum": 0}
@@ -93,6 +97,30 @@ class NumberSetting(Setting):
     def schema(self) -> dict[str, Any]:
         """Return its JSON Schema."""
         return {"type": "integer", "minimum": 0, "description": self.help}
+
+
+@dataclass(frozen=True)
+class NumbersSetting(NumberSetting):
+    """A setting that is a list of different whole numbers, in an order that means something.
+
+    What is known is the place of each, from 0, under the name of the setting and the number.
+    """
+
+    kind: ClassVar[str] = "a list of whole numbers"
+
+    def told(self, raw: object) -> dict[str, str | float]:
+        """Return the place of each number; ValueError for what is no such list."""
+        if not isinstance(raw, list):
+            raise ValueError("expected a list of whole numbers")
+        places = {f"{self.name} {self.read(each)}": place for place, each in enumerate(raw)}
+        if len(places) < len(raw):
+            raise ValueError("expected each number once")
+        return dict(places)
+
+    def schema(self) -> dict[str, Any]:
+        """Return its JSON Schema."""
+        items = {"type": "integer", "minimum": 0}
+        return {"type": "array", "items": items, "uniqueItems": True, "description": self.help}
 
 
 @dataclass(frozen=True)
@@ -162,7 +190,9 @@ def answers(name: str) -> str:
 
 def settings_of(control: Mapping[str, Value]) -> dict[str, str | float]:
     """Return the values of a section that has no findings; lengths in mm."""
-    found = {k: _KNOWN[k].read(v) for k, v in control.items() if k not in (INERT, MACRO)}
+    found: dict[str, str | float] = {}
+    for name, raw in control.items():
+        found |= {} if name in (INERT, MACRO) else _KNOWN[name].told(raw)
     calls = control.get(MACRO, {})
     return found | (macro_tables.calls_of(calls) if isinstance(calls, dict) else {})
 
@@ -194,7 +224,7 @@ def findings(document: TomlText, control: Mapping[str, Value]) -> Iterator[Diagn
             yield from document.unknown_key(("control", name), known).diagnostics
             continue
         try:
-            _codes(value) if name == INERT else _KNOWN[name].read(value)
+            _codes(value) if name == INERT else _KNOWN[name].told(value)
         except ValueError as error:
             setting = _KNOWN.get(name)
             words = [str(choice) for choice in setting.choices] if setting else []

@@ -255,8 +255,8 @@ MUTATIONS = (
     Mutation(
         "klartext: a compensated program leaves out its preset",
         DATUMS,
-        'return [*self.along("CYCL DEF 247',
-        'return [][:0] and [*self.along("CYCL DEF 247',
+        'self.along("CYCL DEF 247 DATUM SETTING ~") or [""]',
+        '[""]',
         f"{COMPENSATED}]",
     ),
     Mutation(
@@ -1440,9 +1440,44 @@ MUTATIONS = (
     Mutation(
         "klartext: rotary axes stand as before behind any preset",
         "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
-        "self.lose(LINEAR if told else None)",
+        "self.lose(LINEAR if work and stays else None)",
         "self.lose(LINEAR)",
         "tests/test_corpus.py::test_case[dialects/heidenhain/preset-loses-turns]",
+    ),
+    Mutation(
+        "klartext: rotary axes stand as before behind a preset of another place",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        "self.lose(LINEAR if work and stays else None)",
+        "self.lose(LINEAR if work else None)",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/presets-lose-turns]",
+    ),
+    Mutation(
+        "klartext: each preset that is told is at the place of the first",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        'return f"G{54 + int(place)}"',
+        'return f"G{54 + 0 * int(place)}"',
+        "tests/test_corpus.py::test_case[dialects/heidenhain/presets-compensated]",
+    ),
+    Mutation(
+        "klartext: a preset that is not told behind one that is",
+        "plugins/gcxform_plugins/dialects/heidenhain/datums.py",
+        "open_ = another and not (work and before)",
+        "open_ = another and not (work or before)",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/presets-one-unknown]",
+    ),
+    Mutation(
+        "klartext: a preset of another place is written as a work offset too",
+        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
+        'if "".join(each) not in unsaid.WORK',
+        "if True",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/presets-compensated]",
+    ),
+    Mutation(
+        "machine: a number stands twice in a list of different ones",
+        "gcxform/machine/control.py",
+        "if len(places) < len(raw):",
+        "if False:",
+        "tests/test_machine.py::test_a_list_of_numbers",
     ),
     Mutation(
         "klartext: a machine file says of a cycle of the control that it moves nothing",

@@ -27,10 +27,11 @@ TURNS = re.compile(r"TRANS\s+(ROTATION|MIRROR)\s+(?:(RESET)|AXIS\s+(.*?)|(I?ROT.
 SCALE = re.compile(rf"SCL\s*({VALUE})")
 UNTURNED = "end the rotation or the mirror image before"
 PLACE = (
-    "say preset = {} in [control], if the place of G54 in the machine file is that of this preset, "
-    "and it is not turned"
+    "say presets = [{}] in [control], if the place of G54 in the machine file is that of this "
+    "preset, and it is not turned; a second number is that of G55"
 )
-PRESET = "preset {} of cycle 247 is where the program counts from, and G54 stands for it"
+PRESET = "preset {} of cycle 247 is where the program counts from, and {} stands for it"
+PRESETS = 6  # work offsets that stand for some: G54 to G59
 
 
 class Datums(Parameters):
@@ -219,20 +220,32 @@ class Datums(Parameters):
         return [*blocks, *(self.along(f"TRANS DATUM AXIS{ends}") if ends else ())]
 
     def preset(self, item: gx.Item, given: dict[int, Decimal]) -> list[str]:
-        """Cycle 247: the preset, if all of the program counts from it; once more it is the same."""
+        """Cycle 247: the preset that the program counts from. Raises InputError.
+
+        Another one than before is read where the machine file has a work offset for each.
+        """
         number = given.get(339)
         if number is None or len(given) > 1:
             self.refuse("a preset without its number", item)
         another = number != self.counts_from and (self.moved or self.counts_from is not None)
+        work, before = self._work_of(number), self._work_of(self.counts_from)
         turned = self.turn != 0 or self.mirrored != ""
-        if another or turned or any(float(n) for n in self.shift.values()):
+        open_ = another and not (work and before)
+        if open_ or turned or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
-        told = self.reading.control.get("preset") == number
-        if number and not (told or self.reading.stays) and "G54" in self.reading.work_offsets:
+        if number and not (work or self.reading.stays) and "G54" in self.reading.work_offsets:
             name = exact(number)
             self.refuse(f"{name} of the presets, each at its own place", item, PLACE.format(name))
         self.counts_from = number
         if number:
-            self.assumed[PRESET.format(exact(number))] = None
-        self.lose(LINEAR if told else None)
-        return [*self.along("CYCL DEF 247 DATUM SETTING ~"), *self.along(f" Q339=+{exact(number)}")]
+            self.assumed[PRESET.format(exact(number), work or "G54")] = None
+        stays = work == (before or "G54")
+        self.lose(LINEAR if work and stays else None)
+        first, *rest = self.along("CYCL DEF 247 DATUM SETTING ~") or [""]
+        blocks = [block for block in (f"{'' if stays else work} {first}".strip(),) if block]
+        return [*blocks, *rest, *self.along(f" Q339=+{exact(number)}")]
+
+    def _work_of(self, number: Decimal | None) -> str:
+        """Return the work offset that stands for a preset, if the machine file says one."""
+        place = None if number is None else self.reading.control.get(f"presets {exact(number)}")
+        return f"G{54 + int(place)}" if place is not None and int(place) < PRESETS else ""

@@ -72,8 +72,9 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | these with TURN or MOVE | nothing where rotary axes are at 0; else, and MB: refused | 620 |
 | an axis that turns under PLANE SPATIAL | refused: words allow for it | 530 technical, p. 761 |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
-| cycle 247 | the preset that it names before the first move; another one later is refused | [K] |
-| the place of G54 beside it | refused, but for `[control] preset` of that number | [K] |
+| cycle 247 | the preset that it names before the first move; another one later is refused, | [K] |
+| | but where `[control] presets` lists both: each is the work offset in its place | |
+| the place of G54 beside it | refused, but where `[control] presets` lists its number | [K] |
 | rotary axes behind that one | stand where they did: `start` counts from it as well | |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |
 | cycles 200, 205 | strokes as `holes.py` says; the feed behind a cycle must be programmed | [K] |
@@ -158,7 +159,7 @@ class Heidenhain(gx.Dialect):
     }
     block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True))
     settings = (
-        gx.NumberSetting("preset", "heidenhain: which preset of cycle 247 G54 of this file is"),
+        gx.NumbersSetting("presets", "heidenhain: those of cycle 247 that are G54, G55 ... here"),
         gx.NumberSetting("inert-cycle", "heidenhain: which of cycles 300 to 399 moves no axis"),
     )
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))

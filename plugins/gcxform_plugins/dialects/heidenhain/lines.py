@@ -34,6 +34,7 @@ BEHIND = frozenset((0, 1, 2, 30))
 QUIET = frozenset(("M1", "M7", "M8", "M9"))
 """M functions that leave the spindle as it is."""
 TAP = "G33.1"
+PRESET = "CYCL DEF 247"
 IN_INCHES = "P", "1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
@@ -105,6 +106,8 @@ class Lines(CallsKept):
                 f"{asides[0]}: in inches, as the program is no more", unsaid.IN_MM
             )
         words = [each for each in words if not asides or each != IN_INCHES]
+        if asides and asides[0].startswith(PRESET):
+            words = [each for each in words if "".join(each) not in unsaid.WORK]
         codes = [coded(*each) for each in words if each[0] in "GM"]
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]
