@@ -112,7 +112,8 @@ class Swivelling(Statements):
             self.refuse(APART, item, ALONE)
         stays = reading.asides and not reading.turns_plainly
         said = gx.Speller.aside(self.text_of(item)) if stays else ""
-        line.ahead += [" ".join(["G90", *plane, said]).rstrip(), f"G0 {attitude}"]
+        line.ahead += ["G90"] * self.said_steps  # of its own: the text of the call has no G90
+        line.ahead += [" ".join([*plane, said]).rstrip(), f"G0 {attitude}"]
         self.said, self.said_steps, self.swivelled = "", False, True
         self._lose_all()
 
