@@ -152,12 +152,18 @@ class Lines(gx.Speller):
         return other and codes.isdisjoint(names)
 
     def _in_machine(self, words: list[tuple[str, str]]) -> Iterator[str]:
-        """Yield the lines of a move to a place of the machine; the length in force waits."""
+        """Yield the lines of a move to a place of the machine; the length in force waits.
+
+        A G90 of it goes ahead, for the machine's coordinates are read in G90 alone.
+        """
         if not self.bare:
             yield "D0"
+        if ("G", "90") in words:
+            yield "G90"
         self.bare, self.waits, self.shifted = True, self.length != "0", True
         yield "#MCS ON"
-        yield " ".join(self._words([each for each in words if each != ("G", "53")], False))
+        ahead = {("G", "53"), ("G", "90")}
+        yield " ".join(self._words([each for each in words if each not in ahead], False))
         yield "#MCS OFF"
 
     def _words(self, words: list[tuple[str, str]], waits: bool) -> Iterator[str]:
