@@ -133,9 +133,11 @@ class Positions:
         path, manner = self.task.path, self.task.manner
         axis = path.axes[column]
         alone = self._turning if axis in LINEAR else np.zeros(len(path), np.bool_)
-        if not self._mixed or not len(path) or not path.plainly_framed:
+        if not self._mixed or not len(path) or any(frame.polar for frame in path.frames):
             return alone
-        still = np.abs(path.end[:, column] - path.start[:, column]) < SAME_PLACE
+        begins = path.start if path.plainly_framed else path.in_frames(path.start)
+        still = np.abs(self.end[:, column] - begins[:, column]) < SAME_PLACE
+        still[1:] &= path.frame[1:] == path.frame[:-1]  # words are those of a frame
         both = 0.505 * (manner.step(axis, False) + manner.step(axis, True))
         still[0] &= abs(held[0] - self.entry[column]) < both
         return np.asarray(still & ~self.programmed[:, column]) | alone

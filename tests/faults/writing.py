@@ -6,6 +6,13 @@ from faults.mutation import CORPUS, FIGURES, FOUND, LAWS, VERIFY, Mutation
 
 MUTATIONS = (
     Mutation(
+        "writing: an axis rests at the number that it had in another shift",
+        "gcxform/emit/positions.py",
+        "still[1:] &= path.frame[1:] == path.frame[:-1]",
+        "still[1:] &= True",
+        "tests/test_corpus.py::test_case[metric/unit-and-shift]",
+    ),
+    Mutation(
         "writing: where axes rest behind a shift is said in the words before it",
         "gcxform/emit/positions.py",
         "self._turning[1:] &= path.frame[1:] == path.frame[:-1]",
