@@ -46,8 +46,10 @@ from gcxform.dialect.cycle_rule import (
 )
 from gcxform.dialect.logic import with_logic
 from gcxform.flow.block_words import At, BlockWords, Change, Worded
+from gcxform.machine.chain import Chain
 from gcxform.machine.formats import ProgramSettings, control_lines
 from gcxform.machine.machine import Axis, Machine, Tool
+from gcxform.machine.tilting import Pose, Poses, poses, turns_of
 from gcxform.modal.expressions.value import Evaluator, LocatedError
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints, Small
 from gcxform.system.inputs import referred
@@ -85,6 +87,7 @@ __all__ = [
     "Axis",
     "BlockWords",
     "Bytes",
+    "Chain",
     "Change",
     "Cycle",
     "CycleRule",
@@ -97,6 +100,8 @@ __all__ = [
     "Machine",
     "NoValueError",
     "Operator",
+    "Pose",
+    "Poses",
     "ProgramSettings",
     "Small",
     "Staying",
@@ -113,8 +118,10 @@ __all__ = [
     "frame",
     "inert",
     "measures",
+    "poses",
     "rapid",
     "referred",
     "tap",
+    "turns_of",
     "with_logic",
 ]

@@ -29,6 +29,7 @@ TAKES = {
     **dict.fromkeys(("tip", "follow-tip"), "H"),
     **dict.fromkeys(("no-plane", "orient"), ""),
     "swivel": "P",
+    "turn-to": "IJK",
 }
 Which = Literal["refused", "kept", "followed"]
 

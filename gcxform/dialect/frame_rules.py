@@ -93,8 +93,8 @@ class TipRule:
     unfollowed       codes of tilted planes and tips that are not followed, with what they do:
                      "plane", "no-plane" or "tip"; see `gcxform/contract/tilted_planes.py`
     planes           codes of tilted planes and tips that are followed on a machine whose tables are
-                     known, with what they do: "define-plane", "orient", "swivel" or
-                     "follow-tip"
+                     known, with what they do: "define-plane", "orient", "swivel",
+                     "turn-to" or "follow-tip"
     """
 
     codes: Mapping[str, str] = field(default_factory=dict)

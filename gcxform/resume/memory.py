@@ -70,7 +70,7 @@ ACTS_RESTATED: Final = frozenset(
     }
 )
 """What codes that act on the frame may do before a restart: the rest is not restated."""
-ACTS_LEFT: Final = frozenset({"define-plane", "orient", "swivel", "follow-tip"})
+ACTS_LEFT: Final = frozenset({"define-plane", "orient", "swivel", "turn-to", "follow-tip"})
 """What others leave behind no restart is in: a plane, or a tip."""
 ONE_BLOCK: Final = frozenset({"G4", "G9", "G28", "G30", "G53"})
 """Codes that hold for one block."""

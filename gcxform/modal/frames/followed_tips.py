@@ -19,12 +19,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from gcxform.machine.tilting import carried
 from gcxform.modal.frame_state import FrameState, TiltedPlane, matrix_of, replace, vector_of
 from gcxform.modal.frames.act import ActError, Asked
 from gcxform.modal.frames.planes import (
     EQUAL,
     TURN,
-    carried,
     named,
     standing,
     zero_carried,

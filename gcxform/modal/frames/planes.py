@@ -26,6 +26,7 @@ import numpy as np
 
 from gcxform.machine.chain import Chain
 from gcxform.machine.inverse import State, attitudes, turns
+from gcxform.machine.tilting import carried, spin
 from gcxform.modal.frame_state import (
     FrameState,
     TiltedPlane,
@@ -42,11 +43,14 @@ from gcxform.toolpath.frames import Vector
 FLAT = 1e-9  # the sine of what may be between the tool and the plane it stands on
 EQUAL, APART = 1e-6, 0.01  # degrees: ways that are the same, and ways that are not for certain
 TURN = 360.0
-LEAVE = "leave the plane before, by G69 or CYCLE800()"
+LEAVE = "leave the plane before, by G69, CYCLE800() or PLANE RESET"
+ANGLES = dict(zip("ABC", "IJK", strict=True))
+"""The words in which a block says to which angles the axes turn."""
 IN_PLANE = frozenset(
     {
         *("length", "length-negative", "length-number", "no-length", "change-tool", "set-tool"),
-        *("user-code", "call", "orient", "swivel", "no-rotate", "home", "machine", "probe"),
+        *("user-code", "call", "orient", "swivel", "turn-to", "no-rotate"),
+        *("home", "machine", "probe"),
     }
 )
 """Acts that leave a plane where it is."""
@@ -104,7 +108,7 @@ def zero_of_work(state: FrameState, asked: Asked, what: str) -> Floats:
 
 def orient(state: FrameState, asked: Asked) -> FrameState:
     """G53.1: the rotary axes turn until the tool stands on the plane, and take it along."""
-    return _oriented(state, asked, _attitude)
+    return _oriented(state, asked, _attitude, open_=False)
 
 
 def swivel(state: FrameState, asked: Asked) -> FrameState:
@@ -115,28 +119,33 @@ def swivel(state: FrameState, asked: Asked) -> FrameState:
     not hang on where the axes stand: only in which turn one without end comes to stand does, and
     all of its turns are one place.
     """
-    return _oriented(state, asked._replace(code="the swivel"), _said_attitude)
+    open_ = bool(asked.written.get("P"))
+    return _oriented(state, asked._replace(code="the swivel"), _said_attitude, open_)
+
+
+def turn_to(state: FrameState, asked: Asked) -> FrameState:
+    """As G53.1, to the angles of A, B and C that I, J and K say, for who has chosen an attitude."""
+    return _oriented(state, asked._replace(code="the plane"), _told_attitude, open_=True)
 
 
 def _oriented(
     state: FrameState,
     asked: Asked,
     attitude: Callable[[Chain, Floats, Floats, Asked], Floats],
+    open_: bool,
 ) -> FrameState:
     chain, plane = asked.reading.tables, state.plane
     assert chain is not None  # else no code has this act
     if plane is None or plane.angles:
         raise ActError("GX213", f"{asked.code} without a plane that G68.2 has said before")
-    _check_ways(chain, asked)
     tilted = np.array(plane.turned)
     which = f"which attitude {asked.code} takes"
-    open_ = bool(asked.written.get("P"))
     angles = attitude(chain, tilted, standing(chain, state, asked, which, PLANE, open_), asked)
     turned = carried(chain, tilted, angles)
     if np.abs(turned[2] - [0.0, 0.0, 1.0]).max() > FLAT:
         raise ActError("GX213", f"{asked.code}: in no attitude the tool stands on the plane")
     zero = zero_carried(chain, state, np.array(plane.zero), angles)
-    about_z = rotation(_spin(turned), 0, 1)
+    about_z = rotation(spin(turned), 0, 1)
     return replace(state, plane=TiltedPlane(about_z, zero, named(chain, angles)))
 
 
@@ -149,17 +158,6 @@ def zero_carried(chain: Chain, state: FrameState, zero: Floats, angles: Floats) 
     """Return where a zero (3,) is once the table has taken it along."""
     gauge, base = np.array(chain.tip), np.array(state.machine[:3])
     return vector_of(chain.onto_machine(zero - base + gauge, angles) - gauge + base)
-
-
-def carried(chain: Chain, matrix: Floats, angles: Floats) -> Floats:
-    """Return directions (3, 3), in columns, as the table carries them."""
-    points = chain.onto_machine(np.vstack([matrix.T, np.zeros(3)]), np.tile(angles, (4, 1)))
-    return np.asarray((points[:3] - points[3]).T)
-
-
-def _spin(turned: Floats) -> float:
-    """Return by how much the X of a plane is turned from that of the machine, degrees."""
-    return float(np.degrees(np.arctan2(turned[1, 0], turned[0, 0])))
 
 
 def standing(
@@ -202,7 +200,7 @@ def _attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> F
     """Return the angles (axes,) that the control takes. Raises ActError."""
     angles, free = _possible(chain, tilted, standing, asked)
     angles = _nearest(angles, standing, asked)
-    if free is not None and abs(_spin(carried(chain, tilted, angles))) > EQUAL:
+    if free is not None and abs(spin(carried(chain, tilted, angles))) > EQUAL:
         raise ActError(
             "GX213",
             f"{asked.code}: {chain.letters[free]} is free in this plane, and no manual "
@@ -246,10 +244,19 @@ def _said_attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked)
     return np.asarray(angles[chosen][0])
 
 
+def _told_attitude(chain: Chain, tilted: Floats, standing: Floats, asked: Asked) -> Floats:
+    """Return the angles (axes,) that the words of the block say. Raises ActError."""
+    lacks = [ANGLES[letter] for letter in chain.letters if ANGLES[letter] not in asked.written]
+    if lacks:
+        raise ActError("GX213", f"to which angle an axis turns no {lacks[0]} says")
+    return np.array([asked.written[ANGLES[letter]] for letter in chain.letters])
+
+
 def _possible(
     chain: Chain, tilted: Floats, standing: Floats, asked: Asked
 ) -> tuple[Floats, int | None]:
     """Return the attitudes (n, axes) within limits, and the axis that is free. Raises ActError."""
+    _check_ways(chain, asked)
     found = attitudes(chain, tilted[:, 2][None, :])
     state = State(int(found.state[0]))
     if state is State.UNREACHABLE:

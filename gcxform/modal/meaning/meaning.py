@@ -97,13 +97,14 @@ ACT_ORDER = (
     "store-home",
     "orient",
     "swivel",
+    "turn-to",
     "home",
     "machine",
     "probe",
 )
 """The order in which a block's acts are done; those with the name of a move are its motion."""
 STILL_WORDS = frozenset("NS")
-ORIENTING = frozenset({"orient", "swivel"})
+ORIENTING = frozenset({"orient", "swivel", "turn-to"})
 """Acts that turn the tool onto a plane."""
 OWN_MOVES = ORIENTING | {"home", "machine", "probe"}
 FRAMING = frozenset(

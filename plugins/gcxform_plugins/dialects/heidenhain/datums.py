@@ -112,7 +112,12 @@ class Datums(Parameters):
             else:
                 self.lose(axis)
         self.shift, self.pole, self.polar, self.last = new, {}, None, None
-        return ["G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
+        ends = self.shifted_in_tilt(item, new)
+        return [*ends, "G52 " + " ".join(f"{axis}{number}" for axis, number in new.items())]
+
+    def shifted_in_tilt(self, item: gx.Item, shift: dict[str, str]) -> list[str]:
+        """Return the blocks that end what a shift is said in. Raises InputError."""
+        raise NotImplementedError
 
     def _unshifted(self, given: dict[str, str], blocks: list[str]) -> list[str]:
         """Return the axes whose shift ends by what no block says: one from before the program."""

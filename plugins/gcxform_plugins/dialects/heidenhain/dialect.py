@@ -32,7 +32,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | the first move in RL or RR, and R0 | end and begin square to the contour | 620 ISO, p. 146 |
 | APPR, DEP | as `approach.py` says | TNC7 |
 | FK | where its data have one solution, as `free.py` says; else refused | TNC 407, p. 5-66 |
-| LN, PLANE that tilts | refused | |
+| LN | refused | |
 | M3 M4 M8 M13 M14 | at the start of their block | TNC 155, p. 15 |
 | M0 M2 M5 M6 M9 M30 | at the end of their block; M0 stops the spindle | TNC 155, p. 15 |
 | M91 | coordinates of the machine, without the tool length | TNC 426 B, p. 122 |
@@ -71,6 +71,15 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | PLANE SPATIAL with angles of 0, STAY | the same where no axis is turned | [K] |
 | these with TURN or MOVE | nothing where rotary axes are at 0; else, and MB: refused | 620 |
 | an axis that turns under PLANE SPATIAL | refused: words allow for it | 530 technical, p. 761 |
+| PLANE that tilts, on a table of the machine file | a plane: `tilting.py`, `planes.py` | 620 |
+| its PROJECTED, RELATIV, AXIAL, and cycle 19; on a head; without a table | refused | |
+| its attitude | that of SEQ; else the one in limits, or the nearer one if that is certain | TNC7 |
+| STAY | X, Y and Z may not move before the axes stand as Q120 to Q122 say | 320, p. 258 |
+| TURN | the rotary axes alone turn | 620, p. 556 |
+| MOVE, MB | X, Y and Z are where only the machine knows | 620, p. 556 |
+| TABLE ROT, COORD ROT | turn an axis that is free, or the words; without either: refused | TNC7 |
+| X, Y and Z behind PLANE | are in the plane once they are told, X and Y together | 320, p. 258 |
+| in a plane M91, M128, a preset, a shift, a rotation | refused; a shift may end there | |
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused, | [K] |
 | | but where `[control] presets` lists both: each is the work offset in its place | |
@@ -139,6 +148,7 @@ class Heidenhain(gx.Dialect):
         "G33.1": gx.Code("motion"),
         "G43": v.frame("tool-length", "length", "H"),
         "G43.1": v.frame("tool-length", "length-vector", v.AXES),
+        **{code: v.barrier("transform", v.TRANSFORM, "PIJK") for code in ("G68.2", "G53.1")},
         "G50.1": v.frame("mirror", "no-mirror", v.AXES),
         "G51.1": v.frame("mirror", "mirror", v.AXES),
         "G52": v.frame("non-modal", "local", v.AXES),
@@ -168,5 +178,6 @@ class Heidenhain(gx.Dialect):
     arc_rule = gx.ArcRule(absolute=0.016, turns="P")
     tip_rule = gx.TipRule(
         switches={"tip-on": "M128", "tip-off": "M129"},
+        planes={"G68.2": "define-plane", "G53.1": "turn-to"},
         follows_at_start=False,  # a new program resets M128: TNC 410/426/430, ISO, p. 169
     )

@@ -113,7 +113,9 @@ class Klartext(Planes):
             raise self.refusal("GX101", "a bracket begins no block of the program", first)
         if not self.begun and not (kind == "text" and first.name.startswith("BEGIN")):
             raise self.refusal("GX101", "a program begins with BEGIN PGM", first)
+        self.check_tilt(items)
         blocks = self.statements[first.name if kind == "path" else kind](items)
+        blocks += self.stood()
         if self.over:
             self.at = len(self.lines)
         return blocks

@@ -37,6 +37,7 @@ TAP = "G33.1"
 PRESET = "CYCL DEF 247"
 IN_INCHES = "P", "1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
+TILTED = frozenset(("G68.2", "G53.1"))
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
 HALF = 180.001  # degrees: words of half a turn are rounded
 SIDES = {"G40": " R0", "G41": " RL", "G42": " RR", "G41.1": " RL", "G42.1": " RR"}
@@ -109,6 +110,9 @@ class Lines(CallsKept):
         if asides and asides[0].startswith(PRESET):
             words = [each for each in words if "".join(each) not in unsaid.WORK]
         codes = [coded(*each) for each in words if each[0] in "GM"]
+        if TILTED & {*codes} or (asides and "G53" in codes):
+            self._forget(LINEAR)
+            return asides
         values = {letter: text for letter, text in words if letter not in "GMNO"}
         found = [*asides, *(self._said(codes, values) if codes or values else ())]
         if comment is not None and found and not found[0].endswith("~"):
@@ -393,8 +397,7 @@ class Lines(CallsKept):
             yield f"CYCL DEF 7.{number} {axis}{signed(value)}"
 
     def _forget(self, axes: Iterable[str]) -> None:
-        for axis in axes:
-            self.place.pop(axis, None)
+        self.place = {axis: at for axis, at in self.place.items() if axis not in axes}
 
 
 ACTS = frozenset(("G4", "G43", "G43.1", "G64", "G49", "G52", "G53", "G68", "G69", *SIDES))

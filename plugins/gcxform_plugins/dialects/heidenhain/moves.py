@@ -53,6 +53,9 @@ class Moves(Saying):
             self._check_turning(said, ends)
         if said.radius or said.sense:
             raise self.refusal("GX203", "R and DR belong to circles")
+        self.check_one_axis([*ends])
+        if (turning := self.turned_in_tilt(said, ends)) is not None:
+            return turning
         code = "G0" if said.rapid else "G1"
         if code == "G1":
             self._check_feed()
@@ -64,6 +67,14 @@ class Moves(Saying):
         if not {"X", "Y"}.isdisjoint(ends):
             self.polar = None
         return f"{beside} {block}" if beside else block
+
+    def turned_in_tilt(self, said: Said, ends: dict[str, str]) -> str | None:
+        """Return the block of a line that turns axes onto a plane; None without one that waits."""
+        raise NotImplementedError
+
+    def check_one_axis(self, ends: Sequence[str]) -> None:
+        """Let go of axes that hang on others which a line does not name."""
+        raise NotImplementedError
 
     def _element(
         self, code: str, ends: Iterable[str], pole: dict[str, str] | None = None

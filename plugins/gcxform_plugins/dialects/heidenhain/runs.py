@@ -242,7 +242,7 @@ class Runs(Klartext):
 
     def _hangs_on_more(self, rapid: bool) -> bool:
         """Whether lines are translated by more than what they say."""
-        beside = not self.begun or self.over or self.begins is not None
+        beside = not self.begun or self.over or self.begins is not None or self.in_tilt()
         return beside or ((self.feed_lost or self.untold) and not rapid)
 
     def _take(self, blocks: str) -> None:
