@@ -36,8 +36,8 @@ INERT = (
     "no axis: inert-m in [control] of the machine file"
 )
 STILL = (
-    "a plane goes with the table: write G69 or CYCLE800() before the axis turns, and the plane "
-    "anew behind it"
+    "a plane goes with the table: write G69, CYCLE800() or PLANE RESET STAY before the axis turns, "
+    "and the plane anew behind it"
 )
 UNTIPPED = "draw the tool back, and write G49 before"
 
@@ -79,7 +79,10 @@ class InPlanes:
         elif len(turning):
             self._refuse(turning, "a rotary axis turns in a tilted plane", STILL)
         elif not said & ORIENTING:
-            what, hint = "a tilted plane", INERT.format("G69 or CYCLE800()", "the plane")
+            what, hint = (
+                "a tilted plane",
+                INERT.format("G69, CYCLE800() or PLANE RESET STAY", "the plane"),
+            )
             if plane.tip:
                 what = "a tip that is followed"
                 hint = f"draw the tool back, and {INERT.format('G49', 'G43.4')}"

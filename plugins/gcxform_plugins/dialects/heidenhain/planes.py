@@ -62,6 +62,7 @@ OTHERS = "PLANE beside a contour, a rotation, a mirror image, or a tip that is f
 LED = "MOVE and MB lead X, Y and Z to where only the machine knows"
 TURN_FIRST = "turn them there in a line of their own before, as L A+Q120 C+Q122 R0 FMAX"
 RESET_FIRST = "write PLANE RESET STAY before"
+ROTARY_ALONE = frozenset(ROTARY)
 OPEN, WAITS, STANDS = "the datum was set anew in it", "the axes do not stand in it yet", ""
 
 
@@ -231,13 +232,18 @@ class Planes(Cycles):
         return [] if self._lacks() else self._onto()
 
     def turned_in_tilt(self, said: Said, ends: dict[str, str]) -> str | None:
-        """Return the block of a line that turns axes while a plane waits; None without one.
+        """Return the block of a line that turns axes onto a plane; None of one that does not.
 
         It stays in the machine, so that no X, Y or Z comes into its line. Where it does nothing but
         to turn all of them onto the plane, in rapid, that is what the plane's own block does.
         """
-        tilt = self.tilt
-        if tilt is None or tilt.why != WAITS:
+        if (
+            self._is_in_plane()
+            and ROTARY_ALONE.issuperset(ends)
+            and ends.items() <= self.place.items()
+        ):
+            return ""  # they stand there, and no X, Y or Z may come into this line either
+        if self.tilt is None or self.tilt.why != WAITS:
             return None
         self.place.update(ends)
         self.moved.update(ends)
@@ -322,9 +328,8 @@ class Planes(Cycles):
 
     def in_tilt(self) -> bool:
         """Whether lines are in a plane by more than their words."""
-        return self.tilt is not None and not (
-            self._is_in_plane() and {"X", "Y"} <= self.place.keys()
-        )
+        there = self._is_in_plane() and {"X", "Y"} <= self.place.keys()
+        return self.tilt is not None and not there
 
     def shifted_in_tilt(self, item: gx.Item, shift: dict[str, str]) -> list[str]:
         """Return the blocks that leave a plane in which the datum is set anew.
@@ -337,6 +342,7 @@ class Planes(Cycles):
             self.refuse("a datum shift in a tilted plane", item, RESET_FIRST)
         blocks = [LEAVE] if self._is_in_plane() else []
         self.tilt = replace(self.tilt, why=OPEN)
+        self.lose(LINEAR)
         return blocks
 
     def _left(self, item: gx.Item, how: str, options: str) -> list[str]:
