@@ -87,7 +87,7 @@ MUTATIONS = (
     Mutation(
         "klartext: an axis turns under PLANE of no tilt",
         "plugins/gcxform_plugins/dialects/heidenhain/planes.py",
-        "self.untilted = bool(spatial)",
+        "self.untilted = spatial",
         "self.untilted = False",
         f"{CASE}plane-turned-in]",
     ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from faults.mutation import Mutation
 
 PLANES = "gcxform/modal/frames/planes.py"
+POSES = "gcxform/machine/tilting.py"
 TIPS = "gcxform/modal/frames/followed_tips.py"
 LOOK = "gcxform/modal/moves/in_planes.py"
 POINT = "tests/test_tilted_planes.py::test_a_point_of_a_plane_is_where_quaternions_say[0]"
@@ -51,7 +52,7 @@ MUTATIONS = (
     ),
     Mutation(
         "planes: what is left of the plane is turned the other way",
-        PLANES,
+        POSES,
         "np.arctan2(turned[1, 0], turned[0, 0])",
         "np.arctan2(-turned[1, 0], turned[0, 0])",
         POINT,
