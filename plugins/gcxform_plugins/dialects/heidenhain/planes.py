@@ -151,6 +151,9 @@ class Planes(Cycles):
         elif spatial and (turned or self.following or (open_ and not self.reading.stays)):
             self._refuse_turned(item, axes, open_)
         self.untilted = spatial
+        self.q |= dict.fromkeys(ANGLES.values())
+        if spatial and not open_:
+            self.q |= {ANGLES[axis]: 0.0 for axis in axes}
         if FEED.search(options):
             self.feed_lost = True
         return self.along()
