@@ -873,8 +873,8 @@ MUTATIONS = (
     Mutation(
         "klartext: circles in runs turn about another place",
         RUNS,
-        "Decimal(plain(self.pole[a])) - Decimal(plain(place[a]))",
-        "Decimal(plain(place[a])) - Decimal(plain(self.pole[a]))",
+        "Decimal(plain(pole[a])) - Decimal(plain(place[a]))",
+        "Decimal(plain(place[a])) - Decimal(plain(pole[a]))",
         "tests/test_klartext_runs.py::test_a_run_of_lines_and_circles_ends_where_they_lead",
     ),
     Mutation(
@@ -887,8 +887,8 @@ MUTATIONS = (
     Mutation(
         "klartext: the pole of circles in runs stays the one before",
         RUNS,
-        "            self.pole = dict(said)\n",
-        "            pass\n",
+        "                pole = way.pole(k)\n",
+        "                pass\n",
         "tests/test_klartext_runs.py::test_runs_are_their_lines",
     ),
     Mutation(

@@ -10,7 +10,7 @@ and the last one of each run, is translated by itself.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
@@ -38,46 +38,40 @@ NOT_SHOWN = "%.0s"
 class Plan:
     """What lines of a shape do: `code` is nothing for CC, `off` whether R0 is said.
 
-    The numbers of `axes` begin at `first`, and `behind` them are that of R0 and that of F, if they
-    stand; `count` is how many all are. `text` is the block without its code, with a place for each
-    number, and for I and J.
+    Its numbers of axes begin at `first`, and `behind` them are that of R0 and that of F, if they
+    stand; `count` is how many all are. `ends` says which are those of the axes that move, and of F.
+    `text` is the block without its code, with a place for each number, and for I and J.
     """
 
     code: str
-    axes: tuple[str, ...]
     first: int
     behind: int
     feed: bool
     off: bool
     count: int
+    ends: Mapping[str, int]
     text: str
 
 
-class _Ends:
-    """Where lines have `led`, as their numbers stand, with the pole and the feed in force."""
+class _Way:
+    """Lines one after the other, with all their numbers: those of each begin at `starts`."""
 
-    def __init__(self, pole: dict[str, str], place: dict[str, str]) -> None:
-        self.pole, self.place = pole, place
-        self.led: dict[str, str] = {}
-        self.feed = ""
+    def __init__(self, plans: list[Plan], numbers: Sequence[str]) -> None:
+        self.plans, self.numbers = plans, numbers
+        self.starts = [*accumulate([plan.count for plan in plans], initial=0)]
 
-    def take(self, plan: Plan, numbers: Sequence[str], at: int) -> None:
-        """Take what a line says, whose numbers begin `at` a place."""
-        said = zip(plan.axes, numbers[at + plan.first : at + plan.behind], strict=True)
-        if plan.code:
-            self.led.update(said)
-        else:
-            self.pole = dict(said)
-        if plan.feed:
-            self.feed = numbers[at + plan.count - 1]
+    def last(self, letter: str, stop: int) -> str | None:
+        """Return the number of an axis, or of F, in the last line that has it before one."""
+        for k in range(stop - 1, -1, -1):
+            slot = self.plans[k].ends.get(letter)
+            if slot is not None:
+                return self.numbers[self.starts[k] + slot]
+        return None
 
-    def about(self) -> list[str]:
-        """Return I and J of a circle that begins here; nothing if a place is not known."""
-        known = self.place.keys() | self.led.keys()
-        if self.pole.keys() != {*"XY"} or not self.pole.keys() <= known:
-            return []
-        place = {axis: self.led.get(axis) or self.place[axis] for axis in "XY"}
-        return [exact(Decimal(plain(self.pole[a])) - Decimal(plain(place[a]))) for a in "XY"]
+    def pole(self, k: int) -> dict[str, str]:
+        """Return the coordinates of a CC."""
+        first = self.starts[k] + self.plans[k].first
+        return {"X": self.numbers[first], "Y": self.numbers[first + 1]}
 
 
 class Runs(Klartext):
@@ -162,45 +156,59 @@ class Runs(Klartext):
 
         Where the last of them leads to is told by the one that is translated behind it.
         """
-        plans, numbers = self._gathered()
-        templates, given, shown, at = list[str](), list[str](), 0, 0
-        ends = _Ends(self.pole, self.place)
-        for plan in plans[:-1]:
-            if plan.code in CIRCLES:
-                about = ends.about()
+        way, pole = self._gathered(), self.pole
+        numbers, templates, given, shown = way.numbers, list[str](), list[str](), 0
+        for k, plan in enumerate(way.plans[:-1]):
+            if not plan.code:
+                pole = way.pole(k)
+            elif plan.code in CIRCLES:
+                about = self._about(way, k, pole)
                 if not about:
                     break
-                given += (*numbers[shown : at + plan.behind], *about)
-                shown = at + plan.behind
-            bare = not plan.code or (plan.code == self.motion and plan.code not in CIRCLES)
-            templates.append(plan.text if bare else self._begun(plan))
-            ends.take(plan, numbers, at)
-            at += plan.count
+                behind = way.starts[k] + plan.behind
+                given += (*numbers[shown:behind], *about)
+                shown = behind
+            templates.append(self._begun(plan))
         if not templates:
             return []
-        self._take_ends(ends)
-        given += numbers[shown:at]
+        self._take_ends(way, len(templates), pole)
+        given += numbers[shown : way.starts[len(templates)]]
         return plain(("\n".join(templates) % (*given,)).replace("+", "")).split("\n")
+
+    def _about(self, way: _Way, k: int, pole: dict[str, str]) -> list[str]:
+        """Return I and J of a circle; nothing if a place is not known.
+
+        A circle names both axes, so those of the next are found between the two.
+        """
+        place = {axis: way.last(axis, k) or self.place.get(axis, "") for axis in "XY"}
+        if pole.keys() != place.keys() or "" in place.values():
+            return []
+        return [exact(Decimal(plain(pole[a])) - Decimal(plain(place[a]))) for a in "XY"]
 
     def _begun(self, plan: Plan) -> str:
         """Return the block of a line, to be filled in with its numbers, and take its codes."""
         plane = self.in_plane("G17") if plan.code in CIRCLES else ""
-        codes = f"{plane}{self.moving(plan.code)}".rstrip()
-        return f"{codes} {plan.text}".lstrip()
+        if not plan.code or plan.code == self.motion:
+            return plane + plan.text
+        self.motion = plan.code
+        return f"{plane}{plan.code} {plan.text}"
 
-    def _take_ends(self, ends: _Ends) -> None:
+    def _take_ends(self, way: _Way, stop: int, pole: dict[str, str]) -> None:
         """Take note of where lines have led, and how fast, and of the pole of the last CC."""
-        if ends.pole is not self.pole or not ends.led.keys().isdisjoint("XY"):
+        found = {axis: way.last(axis, stop) for axis in (*LINEAR, "F")}
+        feed = found.pop("F")
+        led = {axis: plain(number) for axis, number in found.items() if number}
+        if pole is not self.pole or not led.keys().isdisjoint("XY"):
             self.polar = None
-        if ends.pole is not self.pole:
-            self.pole = {axis: plain(number) for axis, number in ends.pole.items()}
-        self.place |= {axis: plain(number) for axis, number in ends.led.items()}
-        self.moved |= ends.led.keys()
-        if ends.feed:
-            self.feed_word(plain(ends.feed))
+        if pole is not self.pole:
+            self.pole = {axis: plain(number) for axis, number in pole.items()}
+        self.place |= led
+        self.moved |= led.keys()
+        if feed:
+            self.feed_word(plain(feed))
 
-    def _gathered(self) -> tuple[list[Plan], list[str]]:
-        """Return the plans of a run of lines, and all their numbers; the last line moves."""
+    def _gathered(self) -> _Way:
+        """Return a run of lines of which there are plans; the last line moves."""
         plans, numbers, line = list[Plan](), list[str](), self.line
         with suppress(gx.InputError):  # a line is refused when it is come to
             while line < len(self.lines):
@@ -211,10 +219,11 @@ class Runs(Klartext):
                 line += len(known)
                 if k + len(known) < len(ahead.keys):
                     break
-        del plans[self._said_in_full(plans, numbers) :]
+        way = _Way(plans, numbers)
+        del plans[_said_in_full(way) :]
         while plans and not plans[-1].code:
             plans.pop()
-        return plans, numbers
+        return way
 
     def _known_plans(self, first: int, keys: Sequence[str]) -> Iterator[Plan]:
         """Yield the plans of lines up to the first without one, or that hangs on more."""
@@ -228,17 +237,6 @@ class Runs(Klartext):
             if (plan.feed and self.inch) or (plan.off and self.side):
                 return
             yield plan
-
-    def _said_in_full(self, plans: Sequence[Plan], numbers: Sequence[str]) -> int:
-        """Return how many lines there are before one of which the plan does not say all."""
-        at, long = 0, max(map(len, numbers), default=0) > LONGEST
-        for k, plan in enumerate(plans):
-            if plan.off and numbers[at + plan.behind] != "0":
-                return k
-            if long and max(map(len, numbers[at : at + plan.count])) > LONGEST:
-                return k
-            at += plan.count
-        return len(plans)
 
     def _hangs_on_more(self, rapid: bool) -> bool:
         """Whether lines are translated by more than what they say."""
@@ -261,6 +259,17 @@ class Runs(Klartext):
                 self.polar = None
 
 
+def _said_in_full(way: _Way) -> int:
+    """Return how many lines there are before one of which the plan does not say all."""
+    numbers, long = way.numbers, max(map(len, way.numbers), default=0) > LONGEST
+    for k, (plan, at) in enumerate(zip(way.plans, way.starts, strict=False)):
+        if plan.off and numbers[at + plan.behind] != "0":
+            return k
+        if long and max(map(len, numbers[at : at + plan.count])) > LONGEST:
+            return k
+    return len(way.plans)
+
+
 def _plan(items: Sequence[gx.Item]) -> Plan:
     """Return what a line does whose words `WORDS` or `ABOUT` has found to be in order."""
     said = [item for item in items if item.kind != "seq"]
@@ -276,7 +285,10 @@ def _plan(items: Sequence[gx.Item]) -> Plan:
     words = " ".join(f"{letter}%s" for letter in letters) + NOT_SHOWN * off + " F%s" * feed
     text = NOT_SHOWN * first + (words if code else NOT_SHOWN * len(axes))
     behind = first + len(axes)
-    return Plan(code, axes, first, behind, feed, off, behind + off + feed, text)
+    count = behind + off + feed
+    ends = {axis: slot for slot, axis in enumerate(axes, first)} if code else {}
+    ends |= {"F": count - 1} if feed else {}
+    return Plan(code, first, behind, feed, off, count, ends, text)
 
 
 def _word(item: gx.Item) -> str:
