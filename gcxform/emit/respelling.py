@@ -9,9 +9,7 @@ executed stays. `gcxform/proof/respelled.py` reads what comes out of here.
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
 from collections.abc import Collection, Iterator
-from itertools import accumulate
 
 import numpy as np
 
@@ -42,11 +40,10 @@ def counting_lines(translator: Translator) -> frozenset[int]:
     if not translator.stepped:
         return counted | {k for k, line in enumerate(lines) if translator.counts(line)}
     text = translator.uncommented("\n".join(lines))
-    places = [match.end() for each in translator.stepped for match in each.finditer(text)]
-    if not places:
-        return counted
-    ends = [*accumulate(len(line) + 1 for line in text.split("\n"))]
-    found = {bisect_left(ends, place) for place in places}
+    found, line, at = set[int](), 0, 0
+    for place in sorted(m.end() for each in translator.stepped for m in each.finditer(text)):
+        line, at = line + text.count("\n", at, place), place
+        found.add(line)
     return counted | {line for line in found if translator.counts(lines[line])}
 
 
