@@ -143,8 +143,8 @@ MUTATIONS = (
     Mutation(
         "klartext: inches go along into a program in mm",
         LINES,
-        "if asides and IN_INCHES in words and not self.inch:",
-        "if asides and IN_INCHES in words and self.inch is None:",
+        "if asides and unsaid.IN_INCHES in words and not self.inch:",
+        "if asides and unsaid.IN_INCHES in words and self.inch is None:",
         f"{COMPENSATED}-in-mm]",
     ),
     Mutation(
@@ -1467,9 +1467,9 @@ MUTATIONS = (
     ),
     Mutation(
         "klartext: a preset of another place is written as a work offset too",
-        "plugins/gcxform_plugins/dialects/heidenhain/lines.py",
-        'if "".join(each) not in unsaid.WORK',
-        "if True",
+        "plugins/gcxform_plugins/dialects/heidenhain/unsaid.py",
+        "own = {*WORK} if",
+        "own = set[str]() if",
         "tests/test_corpus.py::test_case[dialects/heidenhain/presets-compensated]",
     ),
     Mutation(

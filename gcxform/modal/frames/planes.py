@@ -100,7 +100,7 @@ def zero_of_work(state: FrameState, asked: Asked, what: str) -> Floats:
     if state.adrift or not np.isfinite(zero - state.machine[:3]).all():
         raise ActError(
             "GX213",
-            f"where the table takes {what} of {asked.code} depends on where {state.work} is",
+            f"where the table takes {what} depends on where {state.work} is",
             f"say its place in the machine: [work-offset.{state.work}] in the machine file",
         )
     return np.asarray(zero)
@@ -137,7 +137,7 @@ def _oriented(
     chain, plane = asked.reading.tables, state.plane
     assert chain is not None  # else no code has this act
     if plane is None or plane.angles:
-        raise ActError("GX213", f"{asked.code} without a plane that G68.2 has said before")
+        raise ActError("GX213", f"no plane is said before {asked.code}")
     tilted = np.array(plane.turned)
     which = f"which attitude {asked.code} takes"
     angles = attitude(chain, tilted, standing(chain, state, asked, which, PLANE, open_), asked)

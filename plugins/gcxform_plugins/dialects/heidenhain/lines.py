@@ -34,8 +34,6 @@ BEHIND = frozenset((0, 1, 2, 30))
 QUIET = frozenset(("M1", "M7", "M8", "M9"))
 """M functions that leave the spindle as it is."""
 TAP = "G33.1"
-PRESET = "CYCL DEF 247"
-IN_INCHES = "P", "1"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 TILTED = frozenset(("G68.2", "G53.1"))
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
@@ -102,13 +100,11 @@ class Lines(CallsKept):
             self.name = asides.pop(0)[len(BEGIN_PGM) :]
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
-        if asides and IN_INCHES in words and not self.inch:
+        if asides and unsaid.IN_INCHES in words and not self.inch:
             raise gx.UnspeakableError(
                 f"{asides[0]}: in inches, as the program is no more", unsaid.IN_MM
             )
-        words = [each for each in words if not asides or each != IN_INCHES]
-        if asides and asides[0].startswith(PRESET):
-            words = [each for each in words if "".join(each) not in unsaid.WORK]
+        words = unsaid.beside(asides, words)
         codes = [coded(*each) for each in words if each[0] in "GM"]
         if TILTED & {*codes} or (asides and "G53" in codes):
             self._forget(LINEAR)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import gcxform as gx
 from gcxform_plugins.dialects.shared.ways import CENTRED, IN_LINES, UNSHIFTED
 
@@ -18,6 +20,8 @@ HELIX = "a helix by its radius has no words in Klartext", IN_LINES
 
 TURNED = "G68 about another point has no words in Klartext", UNSHIFTED
 SHIFTED = "G52 of fewer axes, or that changes nothing", UNSHIFTED
+IN_INCHES = "P", "1"
+PRESET = "CYCL DEF 247"
 WORK = frozenset(("G55", "G56", "G57", "G58", "G59", "G54.1"))
 
 
@@ -25,3 +29,10 @@ def code_unsaid(code: str) -> gx.UnspeakableError:
     """Return that a code has no words; work offsets are a matter of `offsets`."""
     hint = UNSHIFTED if code in WORK else ""
     return gx.UnspeakableError(f"{code} has no words in Klartext", hint)
+
+
+def beside(asides: Sequence[str], words: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Return the words of a block that no line which goes along says: its inches, its preset."""
+    own = {*WORK} if asides and asides[0].startswith(PRESET) else set[str]()
+    own |= {"".join(IN_INCHES)} if asides else set()
+    return [each for each in words if "".join(each) not in own]
