@@ -23,6 +23,7 @@ ANSWERS: dict[str, Any] = {
     "edge-after-tool-change": 1,
     "presets": [2],
     "inert-cycle": 392,
+    "label-jumps": "return",
     "units": "mm",
     "argument-list": "II",
     "tip-at-start": "off",

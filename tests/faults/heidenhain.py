@@ -1536,4 +1536,11 @@ MUTATIONS = (
         "differ[:, ALONG] = False",
         TARGET,
     ),
+    Mutation(
+        "klartext: a jump out of a call needs no setting",
+        "plugins/gcxform_plugins/dialects/heidenhain/labels.py",
+        "if not inside and self.reading.control.get(JUMPS) is None:",
+        "if False:",
+        "tests/test_heidenhain_refusals.py",
+    ),
 )

@@ -101,7 +101,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | a function | takes the operand behind it: `SQ 10 - 3^3` is 73 | iTNC 530, p. 602 |
 | `-3^2`, SGN 0, `%` below zero | refused | |
 | FN 13, ANG | the angle from b to a, 0 to 360 | 640, p. 384 |
-| FN 9 to 12 | jumps; values nearly equal (1e-9), and out of a subprogram: refused | 640, p. 294 |
+| FN 9 to 12 | jumps; values nearly equal (1e-9): refused; out of a call: a setting | 640, p. 294 |
 | REP behind a jump out of it | refused | |
 | FN 15, 16, 38 | a comment | |
 | FN 18, 27, 28; texts, QS | what they set only the control knows | |
@@ -170,6 +170,7 @@ class Heidenhain(gx.Dialect):
     block_rule = gx.BlockRule(unknown_m=gx.MCode("user", loses_position=True))
     settings = (
         gx.NumbersSetting("presets", "heidenhain: those of cycle 247 that are G54, G55 ... here"),
+        gx.Setting("label-jumps", "heidenhain: LBL 0 behind a jump out of a call", ("return",)),
         gx.NumberSetting("inert-cycle", "heidenhain: which of cycles 300 to 399 moves no axis"),
     )
     flow_rule = gx.FlowRule(lookup=gx.LookupRule(names=("{name}",), endings=(".H",), any_case=True))

@@ -25,6 +25,12 @@ CHOSEN = re.compile(r"CALL\s+SELECTED\s+PGM\s*", re.IGNORECASE)
 END = ("", None)
 DEEPEST = 8  # calls within calls on the control that takes the fewest
 MOST = 65534
+JUMPS = "label-jumps"
+"""The setting that says what ends a subprogram that a jump has left."""
+RETURNS = (
+    f'say {JUMPS} = "return" in [control] if the control then goes back to that call at the next '
+    "LBL 0, as the programs of some CAM systems expect"
+)
 PASSED = "LBL 0 to which no call has led is passed over"
 
 
@@ -155,15 +161,17 @@ class Labels(FreeContours):
         return int(number)
 
     def go_to(self, item: gx.Item, text: str) -> None:
-        """Jump to a label: out of a subprogram nobody knows where that returns to."""
+        """Jump to a label: out of a subprogram a setting has to say where that returns to."""
         match = LABEL.fullmatch(text)
         assert match is not None
         line = self._line_of(item, _name(match[1], match[2]))
         if self.calls and self.calls[-1].lines is None:
             first = self.calls[-1].first
             ends = (n for n in range(first, self.part.stop) if _is_end(self.lines[n]))
-            if not first <= line < next(ends, self.part.stop):
-                self.refuse("a jump out of a subprogram: where that returns to is not known", item)
+            inside = first <= line < next(ends, self.part.stop)
+            if not inside and self.reading.control.get(JUMPS) is None:
+                message = "a jump out of a subprogram: where that returns to is not known"
+                self.refuse(message, item, RETURNS)
         for key in self.left:
             if key[1] == len(self.calls) and not self.repeated[key] <= line <= key[0]:
                 self.left[key] = None
