@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from cycle_kit import HOLE, START, Block, calls, cycles, expanded, refusals, rule, told, turned
 
+import gcxform as gx
 from gcxform.modal.cycles.expansion import UNKNOWN, Calls, Cycles
 
 REFUSED: dict[str, tuple[str, Block, str]] = {
@@ -119,3 +120,11 @@ def test_nothing() -> None:
     steps = cycles("linuxcnc").expand(replace(stretch, **none))
     assert len(steps.rows.kind) == 0
     assert steps.after.shape == (0, 3)
+
+
+def test_a_tap_that_dwells_for_the_p_of_a_cycle_that_goes() -> None:
+    """LinuxCNC keeps the last P: without G82 the tap would not dwell."""
+    text = b"G21 G90 G94 G17\nG0 X0 Y0 Z50\nS500 M3\nG98 G82 X1 R2 Z-5 P0.3 F100\nG80\nG0 X2\n"
+    text += b"G84 X3 R2 Z-5 F500\nG80\nM2\n"
+    with pytest.raises(gx.InputError, match="this tap dwells"):
+        gx.Pipeline.parse("cycles", "linuxcnc").run(text)

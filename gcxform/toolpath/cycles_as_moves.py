@@ -21,17 +21,19 @@ def cycles_as_moves(path: Toolpath, which: Flags | None = None) -> Toolpath:
         cycle &= which
     if not cycle.any():
         return path
-    _check_dwells(path, tied)
+    _check_dwells(path, cycle)
     path = path.replace(form=np.where(cycle, Form.PLAIN, path.form).astype(np.int8))
     still = cycle & (path.end == path.start).all(axis=1)
     return path.with_rows((~still).astype(np.int64)) if still.any() else path
 
 
-def _check_dwells(path: Toolpath, tied: Flags) -> None:
-    """Refuse taps that dwell: for how long may have been said by a cycle that is expanded."""
-    rows = [e.row for e in path.events if e.within and e.what == "DWELL" and e.values[0][1] > 0]
-    before = np.array([row - 1 for row in rows], np.int64)
-    taps = before[(path.form[before] == Form.SYNCHRONISED) & tied[before]]
+def _check_dwells(path: Toolpath, expanded: Flags) -> None:
+    """Refuse taps that dwell as long as a cycle that is expanded, whose P may be theirs as well."""
+    rows = [e for e in path.events if e.within and e.what == "DWELL" and e.values[0][1] > 0]
+    before = np.array([each.row - 1 for each in rows], np.int64)
+    seconds = np.array([each.values[0][1] for each in rows])
+    shared = np.isin(seconds, seconds[expanded[before]])
+    taps = before[(path.form[before] == Form.SYNCHRONISED) & shared]
     if len(taps):
         message = "this tap dwells, perhaps for the P of a cycle that would be expanded"
         raise path.refuse("GX215", taps, message, "leave such programs without the pass")

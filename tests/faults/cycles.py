@@ -419,4 +419,18 @@ MUTATIONS = (
         "if code.after}",
         "tests/test_corpus.py::test_case[dialects/fanuc/m-over-the-hole]",
     ),
+    Mutation(
+        "cycles: a tap may dwell for any cycle that is expanded",
+        "gcxform/toolpath/cycles_as_moves.py",
+        "shared = np.isin(seconds, seconds[expanded[before]])",
+        "shared = np.ones(len(seconds), np.bool_)",
+        "tests/test_corpus.py::test_case[tied/tap-with-its-own-dwell]",
+    ),
+    Mutation(
+        "cycles: a tap dwells for no other cycle",
+        "gcxform/toolpath/cycles_as_moves.py",
+        "shared = np.isin(seconds, seconds[expanded[before]])",
+        "shared = np.zeros(len(seconds), np.bool_)",
+        "tests/test_cycle_refusals.py::test_a_tap_that_dwells_for_the_p_of_a_cycle_that_goes",
+    ),
 )
