@@ -1548,4 +1548,11 @@ MUTATIONS = (
         "if not self.reading.crosses else {}",
         "tests/test_corpus.py::test_case[dialects/siemens/whole-slash]",
     ),
+    Mutation(
+        "siemens: the end of a plane leaves the table where it is",
+        "plugins/gcxform_plugins/dialects/siemens/swivelling.py",
+        "self.loses |= {*self.reading.tables.letters}",
+        "self.loses |= {*LINEAR}",
+        "tests/test_corpus.py::test_case[dialects/siemens/swivelled-folded-twice]",
+    ),
 )

@@ -40,12 +40,11 @@ class CycleCalls(Swivelling):
             if name != "CYCLE800":
                 self._goes_along(line, item, "", self.text_of(item))
             else:
-                self.leave_plane(line)
+                self.end_plane(line)
                 if self.reading.asides:
                     line.asides.append(self.text_of(item))
         elif name == "CYCLE800" and self.may_swivel(given):
             self._one(line, "alone", item)
-            self.leave_plane(line)
             self.take_swivel(line, item, given)
         else:
             why = WHY.get(name, f"{name}(...) is not read")

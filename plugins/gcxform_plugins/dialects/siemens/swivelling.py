@@ -99,6 +99,7 @@ class Swivelling(Statements):
         if moves and goes:
             self.refuse(WAY, item, AWAY)
         if ends:
+            self.end_plane(line)
             line.asides += [self.text_of(item)] * reading.asides
             if moves:
                 self._lose_all()
@@ -107,6 +108,7 @@ class Swivelling(Statements):
             plane, attitude = plane_of(given)
         except CycleError as error:
             self.refuse(f"CYCLE800: {error}", item)
+        self.leave_plane(line)
         apart = self.following or self.comp or self.drilling is not None or self.plane != "XY"
         if apart or self.frame != Frame():
             self.refuse(APART, item, ALONE)
@@ -123,6 +125,12 @@ class Swivelling(Statements):
             line.ahead.append(LEAVE)
             self.swivelled = False
             self._lose_all()
+
+    def end_plane(self, line: Line) -> None:
+        """End a plane by a call: whether the table turns back is the choice of its builder."""
+        if self.swivelled and self.reading.tables is not None:
+            self.loses |= {*self.reading.tables.letters}
+        self.leave_plane(line)
 
     def _lose_all(self) -> None:
         self.place.lose({*LINEAR, *(self.place.named & {*ROTARY})})
