@@ -67,6 +67,8 @@ def goes_along(text: str) -> Along | None:
     if TO_POINTS.fullmatch(text):
         named = {letter.upper() for letter in NAMED.findall(text[3:])}
         return Along("".join(axis for axis in LINEAR + ROTARY if axis in named), UNITS)
+    if not text:
+        return None  # a label that is a word of the language, which is refused for what it is
     counts = ""
     while text:
         found = TELLS.match(text) or LIMITS.match(text)
