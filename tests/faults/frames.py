@@ -13,9 +13,23 @@ MUTATIONS = (
     Mutation(
         "offsets: a program starts in the first one, whichever it states before it moves",
         "gcxform/modal/frames/work_offsets.py",
-        "    if unmoved:\n",
-        "    if unmoved and name not in asked.reading.work_offsets:\n",
+        "    if starts and not",
+        "    if starts and name not in places and not",
         "tests/test_corpus.py::test_case[offsets/starts-in-the-one-stated]",
+    ),
+    Mutation(
+        "offsets: a zero that G10 sets before it is stated is that of the machine file",
+        "gcxform/modal/frames/work_offsets.py",
+        "not state.known and not state.given and",
+        "not state.known and",
+        "tests/test_corpus.py::test_case[offsets/set-before-stated]",
+    ),
+    Mutation(
+        "offsets: positions count from the one stated first, also of a control that knows G54",
+        "gcxform/modal/frames/work_offsets.py",
+        "if starts and not (asked.reading.crosses and {name, state.first} <= places.keys()):",
+        "if starts:",
+        "tests/test_corpus.py::test_case[offsets/stated-first-across]",
     ),
     Mutation(
         "offsets: the frame before the first move counts",

@@ -60,7 +60,11 @@ def table(state: FrameState, asked: Asked) -> FrameState:
 
 
 def work(state: FrameState, asked: Asked) -> FrameState:
-    """G54 and its like: another work offset; a code that takes words names one by each of them."""
+    """G54 and its like: another work offset; a code that takes words names one by each of them.
+
+    Before anything moves positions count from it, if no zero has been set anew. Of two controls one
+    may know that it begins in G54, and not the other: they count from G54 where files say both.
+    """
     if state.unsettled:
         state = replace(state.shifted(), unsettled=False)
     name = asked.dialect.offset_rule.names.get(asked.code, asked.code)
@@ -71,11 +75,10 @@ def work(state: FrameState, asked: Asked) -> FrameState:
         if number < 1 or number % 1:
             raise ActError("GX213", f"{name} needs a whole number in {address}")
         name = f"{name} {address}{number:.0f}"
-    if state.known:
-        return state.in_work(name)
-    unmoved = bool(np.isnan(asked.position).all())
-    if unmoved:
-        return state.starting_in(name, asked.reading.work_offsets, True)
+    starts = not state.known and not state.given and bool(np.isnan(asked.position).all())
+    places = asked.reading.work_offsets
+    if starts and not (asked.reading.crosses and {name, state.first} <= places.keys()):
+        return state.starting_in(name, places, True)
     return state.in_work(name)
 
 
