@@ -7,6 +7,8 @@ from faults.mutation import Mutation
 PLANES = "plugins/gcxform_plugins/dialects/heidenhain/planes.py"
 TILTING = "plugins/gcxform_plugins/dialects/heidenhain/tilting.py"
 POSES = "gcxform/machine/tilting.py"
+LINES = "plugins/gcxform_plugins/dialects/heidenhain/lines.py"
+DATUMS = "plugins/gcxform_plugins/dialects/heidenhain/datums.py"
 FILE = "tests/test_klartext_planes.py"
 POINT = f"{FILE}::test_a_point_of_a_plane_is_where_trying_all_angles_says[0]"
 EXAMPLE = f"{FILE}::test_the_example_of_the_manual"
@@ -19,6 +21,20 @@ def case(name: str) -> str:
 
 
 MUTATIONS = (
+    Mutation(
+        "klartext planes: behind a line that turns in rapid the feed goes on",
+        LINES,
+        "            self._modes([code for code in codes if code not in TILTED])\n",
+        "",
+        case("rapid-behind"),
+    ),
+    Mutation(
+        "klartext planes: a preset whose place goes into the words is said as well",
+        DATUMS,
+        'if work not in ("", "G54") and self.reading.turns_plainly',
+        "if False and self.reading.turns_plainly",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/presets-folded]",
+    ),
     Mutation(
         "klartext planes: spatial angles go along",
         TILTING,

@@ -31,6 +31,7 @@ PLACE = (
     "preset, and it is not turned; a second number is that of G55"
 )
 PRESET = "preset {} of cycle 247 is where the program counts from, and {} stands for it"
+NOT_FOLDED = "its place would go into words that count from it where the cycle stands"
 PRESETS = 6  # work offsets that stand for some: G54 to G59
 
 
@@ -241,6 +242,8 @@ class Datums(Parameters):
         if number and not (work or self.reading.stays) and "G54" in self.reading.work_offsets:
             name = exact(number)
             self.refuse(f"{name} of the presets, each at its own place", item, PLACE.format(name))
+        if work not in ("", "G54") and self.reading.turns_plainly and self.reading.asides:
+            self.refuse(f"preset {exact(number)}: {NOT_FOLDED}", item)
         self.counts_from = number
         if number:
             self.assumed[PRESET.format(exact(number), work or "G54")] = None

@@ -83,6 +83,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | that, SCL 1, M115, M145 behind a kept line | kept: it may end what moved the zero | |
 | cycle 247 | the preset that it names before the first move; another one later is refused, | [K] |
 | | but where `[control] presets` lists both: each is the work offset in its place | |
+| such another one, by `offsets` in the same language | refused: its cycle goes along | |
 | the place of G54 beside it | refused, but where `[control] presets` lists its number | [K] |
 | rotary axes behind that one | stand where they did: `start` counts from it as well | |
 | cycle 1 | strokes from where the tool stands, to 0.6 mm before them in rapid | TNC 407, p. 8-4 |

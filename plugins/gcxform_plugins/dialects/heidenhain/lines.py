@@ -101,12 +101,11 @@ class Lines(CallsKept):
         text = " ".join(comments)
         comment = text.rstrip(GOES_ON) if text else None
         if asides and unsaid.IN_INCHES in words and not self.inch:
-            raise gx.UnspeakableError(
-                f"{asides[0]}: in inches, as the program is no more", unsaid.IN_MM
-            )
+            raise unsaid.in_inches(asides[0])
         words = unsaid.beside(asides, words)
         codes = [coded(*each) for each in words if each[0] in "GM"]
         if TILTED & {*codes} or (asides and "G53" in codes):
+            self._modes([code for code in codes if code not in TILTED])
             self._forget(LINEAR)
             return asides
         values = {letter: text for letter, text in words if letter not in "GMNO"}
@@ -132,13 +131,11 @@ class Lines(CallsKept):
             yield f"CYCL DEF 9.1 DWELL {bare(values.pop('P', '0'))}"
         yield from self._tools(codes, values)
         yield from (f"M{int(c[1:])}" for c in ahead)
-        for code in functions:
-            if code not in QUIET:
-                self.spindle = code if code in ("M3", "M4") else ""
+        for code in [c for c in functions if c not in QUIET]:
+            self.spindle = code if code in ("M3", "M4") else ""
         yield from self._moves(codes, values)
-        for each in functions:
-            if each not in ahead:
-                yield from self._ends(each)
+        for each in [c for c in functions if c not in ahead]:
+            yield from self._ends(each)
 
     def _modes(self, codes: list[str]) -> None:
         """Take codes that stay in force. Raises UnspeakableError for those of no TNC."""

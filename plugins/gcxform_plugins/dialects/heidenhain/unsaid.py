@@ -36,3 +36,8 @@ def beside(asides: Sequence[str], words: Sequence[tuple[str, str]]) -> list[tupl
     own = {*WORK} if asides and asides[0].startswith(PRESET) else set[str]()
     own |= {"".join(IN_INCHES)} if asides else set()
     return [each for each in words if "".join(each) not in own]
+
+
+def in_inches(text: str) -> gx.UnspeakableError:
+    """Return the refusal of a line in inches in a program that is in mm now."""
+    return gx.UnspeakableError(f"{text}: in inches, as the program is no more", IN_MM)
