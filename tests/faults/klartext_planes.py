@@ -22,6 +22,13 @@ def case(name: str) -> str:
 
 MUTATIONS = (
     Mutation(
+        "klartext planes: turns of one attitude are several",
+        TILTING,
+        "fit += [{**turns, self.master: signed}] if signed else []",
+        "fit += [{**turns, self.master: [value]} for value in signed]",
+        case("several-turns"),
+    ),
+    Mutation(
         "klartext planes: behind a line that turns in rapid the feed goes on",
         LINES,
         "            self._modes([code for code in codes if code not in TILTED])\n",

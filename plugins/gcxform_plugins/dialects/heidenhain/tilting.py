@@ -157,7 +157,7 @@ class Attitude:
         factor, fit = (1.0 if self.sign == "+" else -1.0), []
         for turns in reached:
             signed = [value for value in turns[self.master] if factor * value >= -ALIKE]
-            fit += [{**turns, self.master: [value]} for value in signed]
+            fit += [{**turns, self.master: signed}] if signed else []
         if not fit:
             raise TiltError(f"no attitude with this sign of {self.master} is within its limits")
         if len(fit) > 1:
