@@ -23,7 +23,7 @@ from gcxform.flow.annexed import BYTE_ORDER_MARK, LINE_END
 from gcxform.flow.translated import Translated
 from gcxform.stamps.comment import OPEN_SEAL, is_stamp
 
-SLASHED = "a slash: a switch decides on lines that have become others"
+SLASHED = "a slash: a switch decides on a line that has become another"
 OTHERS = "this line would change, and stands in another program"
 UNSAID = "what this line became cannot be said in its place"
 CALLS = "what is called behind this line would be another"
@@ -63,14 +63,11 @@ class _Refolding:
 
     def spell(self) -> None:
         """Find what each line becomes. Raises SpellingError."""
-        slashed = next(iter(self.translator.slashed()), None)
-        if slashed is not None:
-            raise refusal(self.source, slashed, SLASHED)
         walk: Walk | None = None
         for _ in range(ROUNDS):
             wrong = self._round(walk)
             if not wrong:
-                return
+                return self._check_slashed()
             walk = walk or Walk(self.source)
             more: list[Unit] = []
             for visit, why in wrong.items():
@@ -78,6 +75,13 @@ class _Refolding:
                     more.append(walk.unit(visit, why))
             self.units = walk.together([*self.units, *more])
         raise refusal(self.source, self.units[-1].first, UNSAID)
+
+    def _check_slashed(self) -> None:
+        """Refuse lines with a slash that have become others: a switch decides on these alone."""
+        for line in self.translator.slashed():
+            stays = ((self.source.lines[line], line),)
+            if self.new.get(line, stays) != stays:
+                raise refusal(self.source, line, SLASHED)
 
     def _round(self, walk: Walk | None) -> dict[int, str]:
         """Spell all lines; return executions that cannot stay in their place, and why."""

@@ -246,4 +246,11 @@ MUTATIONS = (
         "and False:",
         f"{CASES}-prints-local]",
     ),
+    Mutation(
+        "refolding: a line with a slash may become another",
+        "gcxform/emit/refolding.py",
+        "if self.new.get(line, stays) != stays:",
+        "if False:",
+        "tests/test_corpus.py::test_case[dialects/heidenhain/slash-of-a-line-that-changes]",
+    ),
 )
