@@ -20,9 +20,16 @@ MUTATIONS = (
     Mutation(
         "offsets: a zero that G10 sets before it is stated is that of the machine file",
         "gcxform/modal/frames/work_offsets.py",
-        "not state.known and not state.given and",
-        "not state.known and",
+        "unmoved = not state.given and",
+        "unmoved =",
         "tests/test_corpus.py::test_case[offsets/set-before-stated]",
+    ),
+    Mutation(
+        "offsets: where the first one is has to be known, though another is stated",
+        "gcxform/modal/frames/work_offsets.py",
+        "starts = unmoved and (apart or not state.known)",
+        "starts = unmoved and not state.known",
+        "tests/test_corpus.py::test_case[offsets/stated-first-alone]",
     ),
     Mutation(
         "offsets: positions count from the one stated first, also of a control that knows G54",

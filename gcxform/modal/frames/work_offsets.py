@@ -62,8 +62,10 @@ def table(state: FrameState, asked: Asked) -> FrameState:
 def work(state: FrameState, asked: Asked) -> FrameState:
     """G54 and its like: another work offset; a code that takes words names one by each of them.
 
-    Before anything moves positions count from it, if no zero has been set anew. Of two controls one
-    may know that it begins in G54, and not the other: they count from G54 where files say both.
+    Before anything moves positions count from it, if no zero has been set anew, and the control
+    began in no other that is known, or in one that lies nobody knows where beside it. Of two
+    controls one may know that it begins in G54, and not the other: they count from G54 where files
+    say both.
     """
     if state.unsettled:
         state = replace(state.shifted(), unsettled=False)
@@ -75,8 +77,10 @@ def work(state: FrameState, asked: Asked) -> FrameState:
         if number < 1 or number % 1:
             raise ActError("GX213", f"{name} needs a whole number in {address}")
         name = f"{name} {address}{number:.0f}"
-    starts = not state.known and not state.given and bool(np.isnan(asked.position).all())
     places = asked.reading.work_offsets
+    apart = name in places and bool(np.isnan(state.zero_of(name)).any())
+    unmoved = not state.given and bool(np.isnan(asked.position).all())
+    starts = unmoved and (apart or not state.known)
     if starts and not (asked.reading.crosses and {name, state.first} <= places.keys()):
         return state.starting_in(name, places, True)
     return state.in_work(name)
