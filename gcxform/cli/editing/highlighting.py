@@ -32,12 +32,14 @@ SCOPES: Final = {
 }
 """Scopes by the terminals, of whatever grammar, that have them; others are punctuation."""
 _OF: Final = {name: scope for scope, names in SCOPES.items() for name in names.split()}
+_AHEAD: Final = "|".join((r"(?:^[ \t]*", *(rf"(?<=^N[0-9]{{{n}}} )" for n in range(1, 6)))) + ")"
 PLACES: Final = {
     "BLOCK_DELETE": r"^[ \t]*",
-    "LABEL": "|".join((r"(?:^[ \t]*", *(rf"(?<=^N[0-9]{{{n}}} )" for n in range(1, 6)))) + ")",
+    **dict.fromkeys(("FLOW", "LABEL"), _AHEAD),
     "M99_P": r"(?:(?<=\])|(?<=\][ \t]))",
     "FUNCTION": r"(?<==)",
     "STRING": r"(?<=\b[A-Z]=)",
+    "PARAMETER": r"(?<=[A-Z])",
 }
 """Where a terminal stands that is another one elsewhere: there it is tried before all others."""
 ONLY_THERE: Final = ("M99_P",)
