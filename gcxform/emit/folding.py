@@ -15,13 +15,13 @@ executes what comes out of here.
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import cached_property
 from itertools import islice
 
 import numpy as np
 
+from gcxform.emit.numbered import SEQUENCE, sequence_numbers
 from gcxform.emit.spelled import Spelled, Text
 from gcxform.emit.units import Unit
 from gcxform.emit.values_left import Values
@@ -30,7 +30,6 @@ from gcxform.stamps.comment import is_stamp
 from gcxform.syntax.tree import Statement
 from gcxform.values import dataclass
 
-SEQUENCE = re.compile(rb"[ \t]*(?:/[1-9]?)?[ \t]*[Nn][ \t]*0*([0-9]+)")
 RETURNS = re.compile(rb"#[ \t]*<[ \t]*_value", re.IGNORECASE)
 OTHERS = "what is not executed, or another program, calls it as it stands"
 MODAL = re.compile(rb"G[ \t]*66(?![0-9])", re.IGNORECASE)
@@ -374,7 +373,7 @@ class _Folding:
         ]
         stay = [to for line, to in jumps if not any(unit.has(line) for unit in gone)]
         lines = {line for line in stay if not any(unit.has(line) for unit in gone)}
-        before, after = (_numbers(each) for each in (walk.listing.window.text, text))
+        before, after = (sequence_numbers(each) for each in (walk.listing.window.text, text))
         for line in sorted(lines):
             found = SEQUENCE.match(self.spelled.raw(line))
             new = SEQUENCE.match(self.texts[line].text) if line in self.texts else found
@@ -392,8 +391,3 @@ class _Folding:
                 names.append(f"lines {unit.first + 1} to {unit.last + 1}")
             found.append(f"{', '.join(names)}: {why}")
         return tuple(found)
-
-
-def _numbers(text: bytes) -> Counter[int]:
-    """Count the sequence numbers of a program."""
-    return Counter(int(found[1]) for found in map(SEQUENCE.match, text.splitlines()) if found)

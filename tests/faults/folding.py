@@ -119,4 +119,11 @@ MUTATIONS = (
         PROOF,
         PLANTED,
     ),
+    Mutation(
+        "folding: a number counts in all programs of a text together",
+        "gcxform/emit/numbered.py",
+        "most |= Counter(",
+        "most += Counter(",
+        "tests/test_corpus.py::test_case[flow/numbers-of-several-files]",
+    ),
 )
