@@ -110,6 +110,23 @@ def test_lines_are_split_as_lark_does(name: str, engine: Callable[[str], Match])
     assert read > 5
 
 
+@pytest.mark.parametrize("engine", [by_re, by_oniguruma])
+@pytest.mark.parametrize(
+    ("name", "line", "word", "scope"),
+    [
+        ("siemens", "LOOP:", "LOOP:", "keyword.control"),
+        ("siemens", "N10 HERE:", "HERE:", "entity.name.label"),
+        ("heidenhain", "11 L IX-5,5 FQ1 M9", "Q1", "variable.parameter"),
+    ],
+)
+def test_words_that_look_like_others(
+    name: str, line: str, word: str, scope: str, engine: Callable[[str], Match]
+) -> None:
+    patterns = [(each, engine(pattern)) for _, each, pattern in patterns_of(DIALECTS[name])]
+    begin = line.index(word)
+    assert {*coloured(line, patterns)[begin : begin + len(word)]} == {scope}
+
+
 @pytest.mark.parametrize("name", DIALECTS)
 def test_a_grammar_is_printed_as_editors_read_it(name: str) -> None:
     printed: dict[str, Any] = json.loads(call("lsp", "--highlighting", name).stdout)

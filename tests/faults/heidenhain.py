@@ -255,8 +255,8 @@ MUTATIONS = (
     Mutation(
         "klartext: a compensated program leaves out its preset",
         DATUMS,
-        'self.along("CYCL DEF 247 DATUM SETTING ~") or [""]',
-        '[""]',
+        'blocks = self.along("CYCL DEF 247 DATUM SETTING ~")',
+        "blocks = list[str]()",
         f"{COMPENSATED}]",
     ),
     Mutation(

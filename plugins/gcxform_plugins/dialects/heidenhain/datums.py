@@ -233,10 +233,26 @@ class Datums(Parameters):
         number = given.get(339)
         if number is None or len(given) > 1:
             self.refuse("a preset without its number", item)
-        another = number != self.counts_from and (self.moved or self.counts_from is not None)
         work, before = self._work_of(number), self._work_of(self.counts_from)
-        turned = self.turn != 0 or self.mirrored != ""
+        self._check_preset(item, number, work, before)
+        self.counts_from = number
+        if number:
+            self.assumed[PRESET.format(exact(number), work or "G54")] = None
+        stays = work == (before or "G54")
+        self.lose(LINEAR if work and stays else None)
+        blocks = self.along("CYCL DEF 247 DATUM SETTING ~")
+        if work and not stays:
+            blocks = [" ".join([work, *blocks])]
+        return [*blocks, *self.along(f" Q339=+{exact(number)}")]
+
+    def _check_preset(self, item: gx.Item, number: Decimal, work: str, before: str) -> None:
+        """Refuse a preset of which nobody knows where it is, or that would stand beside its place.
+
+        `work` and `before` are the work offsets that stand for it, and for the one in force.
+        """
+        another = number != self.counts_from and (self.moved or self.counts_from is not None)
         open_ = another and not (work and before)
+        turned = self.turn != 0 or self.mirrored != ""
         if open_ or turned or any(float(n) for n in self.shift.values()):
             self.refuse("another preset in the middle of a program", item)
         if number and not (work or self.reading.stays) and "G54" in self.reading.work_offsets:
@@ -244,14 +260,6 @@ class Datums(Parameters):
             self.refuse(f"{name} of the presets, each at its own place", item, PLACE.format(name))
         if work not in ("", "G54") and self.reading.turns_plainly and self.reading.asides:
             self.refuse(f"preset {exact(number)}: {NOT_FOLDED}", item)
-        self.counts_from = number
-        if number:
-            self.assumed[PRESET.format(exact(number), work or "G54")] = None
-        stays = work == (before or "G54")
-        self.lose(LINEAR if work and stays else None)
-        first, *rest = self.along("CYCL DEF 247 DATUM SETTING ~") or [""]
-        blocks = [block for block in (f"{'' if stays else work} {first}".strip(),) if block]
-        return [*blocks, *rest, *self.along(f" Q339=+{exact(number)}")]
 
     def _work_of(self, number: Decimal | None) -> str:
         """Return the work offset that stands for a preset, if the machine file says one."""
