@@ -47,7 +47,7 @@ def test_time_of_feed_moves(tmp_path: Path, blocks: str, seconds: float) -> None
 
 
 def test_feed_per_turn_needs_the_spindle(tmp_path: Path) -> None:
-    found = info(tmp_path, f"{HEAD}G95 G1 X10 F0.2\nM2\n")
+    found = info(tmp_path, f"{HEAD}G95 G1 X10. F0.2\nM2\n", dialect="fanuc")
     assert found["time_s"]["feed"] == 0
     assert found["time_without"]["feed moves"] == 1
 

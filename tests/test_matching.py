@@ -329,7 +329,7 @@ def test_inverse_time_feeds_of_pieces_add_up() -> None:
 
 
 def test_feed_modes_and_work_offsets() -> None:
-    assert "feed mode G94 became G95" in compared("X5\n", "G95 F100 X5\n").feeds[0].what
+    assert "feed mode G94 became G95" in compared("S9\nX5\n", "S9\nG95 F100 X5\n").feeds[0].what
     found = compared("G55 G1 X5 Y0 Z0\n", "G56 G1 X5 Y0 Z0\n")
     assert found.feeds[0].what == "G55 became G56"
 

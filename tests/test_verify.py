@@ -338,7 +338,7 @@ def test_what_was_written_passes_in_windows_of_any_size(chain: str, size: int) -
 # --- feeds that are converted ---
 
 CONVERTED = b"""\
-G21 G90 G94 G17
+G21 G90 G94 G17 S500
 G0 X0 Y0 Z5 A0
 G1 X10 F100
 G2 X30 Y0 I10 F200

@@ -45,7 +45,7 @@ CODES: dict[str, tuple[str, str]] = {
         "A feed move stands where no feed is in force, or a dwell has no time. The feed before "
         "the first F word is what the control happened to hold, and in G93 every feed block "
         "needs its own F. Write the word, or say `feed` in [input] if the control starts with a "
-        "feed that you know.",
+        "feed that you know. LinuxCNC refuses a feed per turn as well before an S word.",
     ),
     "GX205": (
         "A number without a decimal point",

@@ -55,6 +55,7 @@ class FeedRule:
                        axes where they move alone; otherwise the length of such moves is not known
     arcs_in_time       whether arcs take the time that G93 gives them
     least_inverse_rate units of the program per minute: in G93 the control moves no slower
+    turns_need_speed   a feed per turn is refused before an S word, and where S is 0
     """
 
     mode_clears: bool = False
@@ -64,6 +65,7 @@ class FeedRule:
     along_lines: bool = False
     arcs_in_time: bool = True
     least_inverse_rate: float = 0.0
+    turns_need_speed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

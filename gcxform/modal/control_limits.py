@@ -11,12 +11,15 @@ from gcxform.catalogue.remedies import tool_said
 from gcxform.modal.findings import Findings
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import NURBS
-from gcxform.modal.state import Modes
-from gcxform.toolpath.path import Event, Kind
+from gcxform.modal.state import CYCLE_OFF, SPEED, Modes
+from gcxform.system.arrays import Flags
+from gcxform.system.distinct import one_of
+from gcxform.toolpath.path import Event, FeedMode, Kind
 
 NOT_NEGATIVE = {"S": "a speed", "T": "a tool number", "DWELL": "a dwell"}
 NAMES_TOOL = frozenset({"T", "M61"})
 ALL_SPINDLES = -1.0
+FED = (Kind.LINE, Kind.ARC_CW, Kind.ARC_CCW)
 SILENT = re.compile(rb"\([^)]*\)|;.*|\s")
 
 
@@ -28,6 +31,7 @@ def refuse_limits(lines: Lines, modes: Modes, events: Iterable[Event]) -> None:
     _other_spindle(lines, events)
     _number_too_large(lines)
     _turns_without_arc(lines, modes)
+    _turns_without_speed(lines, modes)
 
 
 def without_blanks(line: bytes) -> int:
@@ -101,5 +105,29 @@ def _turns_without_arc(lines: Lines, modes: Modes) -> None:
     arc = (modes.motion >= Kind.ARC_CW) & ~lines.flag("own_moves")
     arc &= lines.flag("moves") | lines.flag("has_centre")
     arc |= modes.motion == NURBS  # a weight
-    for line in np.flatnonzero(turns[1] & ~arc & (modes.cycle == 80)).tolist():
+    for line in np.flatnonzero(turns[1] & ~arc & (modes.cycle == CYCLE_OFF)).tolist():
         lines.findings.add(line, "GX203", f"{address} belongs to an arc, and this is none", address)
+
+
+def _turns_without_speed(lines: Lines, modes: Modes) -> None:
+    """Refuse feeds per turn of a spindle whose speed is 0, as it is until an S word."""
+    if not lines.dialect.feed_rule.turns_need_speed:
+        return
+    turns = _turning(lines)
+    moves = (lines.flag("moves") | lines.stated("motion")) & ~lines.flag("own_moves")
+    feeds = one_of(modes.motion, FED) & (moves | lines.flag("in_machine"))
+    feeds &= (modes.feed_mode == FeedMode.PER_TURN) & ~turns
+    for line in np.flatnonzero(feeds)[: Findings.enough].tolist():
+        message = "a feed per turn, but the speed of the spindle is 0"
+        lines.findings.add(line, "GX204", message, hint="write an S word before it")
+
+
+def _turning(lines: Lines) -> Flags:
+    """Return the lines on which a speed is in force that is not 0, or not known."""
+    word, before = lines.word("S"), bool(lines.state.memory[SPEED])
+    if word is None or not lines.live:
+        return np.full(lines.live, before)
+    said = np.maximum.accumulate(np.where(word[1], np.arange(lines.live), -1))
+    found = np.where(said < 0, before, word[0][said] != 0.0)
+    lines.state.memory[SPEED] = int(found[-1:].any())
+    return found

@@ -28,7 +28,7 @@ from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, S
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.moves.open_units import refuse_open_units
-from gcxform.modal.state import CYCLE_OFF, UNKNOWN_SPINDLE, Modes, Reading, State
+from gcxform.modal.state import CYCLE_OFF, SPEED, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
@@ -136,7 +136,7 @@ class Interpreter:
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
         state.memory |= {"tool-length": NUMBER["G49"], "extrusion": 0, "extruded": 0}
-        state.memory |= {"centres": 0, "unit-open": int(self.reading.unit_open != "")}
+        state.memory |= {"centres": 0, SPEED: 0, "unit-open": int(self.reading.unit_open != "")}
         return state
 
     def _given(self) -> dict[Key, float]:

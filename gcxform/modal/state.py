@@ -27,6 +27,7 @@ UNITS = ("mm", "in", "")
 TOOLS = 99_999_999  # a T has at most eight digits on any control
 CYCLE_OFF = 80
 UNKNOWN_SPINDLE = 3
+SPEED = "speed"  # whether an S that is not 0 is in force, in `State.memory`
 
 
 @dataclass(frozen=True, slots=True)

@@ -254,11 +254,12 @@ def _begun(dialect: type[Dialect], modes: tuple[str, ...]) -> type[Dialect]:
     """Return a dialect whose programs begin in modes, and otherwise in its own."""
     groups = {dialect.codes[code].group: code for code in modes}
     rule = replace(dialect.program_rule, unit_is_set=False)  # its caller sets it
+    feeds = replace(dialect.feed_rule, turns_need_speed=False)  # and has said an S
     retract, cycles = groups.pop("retract", ""), dialect.cycle_rule
     if retract and cycles is not None:
         cycles = replace(cycles, initial_level=retract == "G98")
     initial = {**dialect.initial, **groups}
-    begun = {"initial": initial, "program_rule": rule, "cycle_rule": cycles}
+    begun = {"initial": initial, "program_rule": rule, "cycle_rule": cycles, "feed_rule": feeds}
     return type(dialect.__name__, (dialect,), begun)
 
 

@@ -16,7 +16,16 @@ def _tapping(name: str, old: str, new: str, tests: str = TAPPING) -> Mutation:
     return Mutation(f"tapping: {name}", "gcxform/emit/tapping.py", old, new, tests)
 
 
+SPEEDS = "tests/test_corpus.py::test_case[bad/gx204-per-turn-without-speed]"
+
+
+def _turning(name: str, old: str, new: str) -> Mutation:
+    return Mutation(f"tied: {name}", "gcxform/modal/control_limits.py", old, new, SPEEDS)
+
+
 MUTATIONS = (
+    _turning("S 0 is a speed", "word[0][said] != 0.0", "True"),
+    _turning("a speed is forgotten", "np.maximum.accumulate(np", "np.asarray(np"),
     _tapping(
         "the place is that of the bottom",
         "(hole.top[place] + hole.bottom[place]) / 2",

@@ -86,6 +86,7 @@ class _Machine:
             "frame": dialect.frame if not position or dialect.frame else 540,
         }
         self.feed: tuple[float, float] = (0.0, 0.0)  # linear (mm), rotary (degrees)
+        self.speed = 0.0
         self.ended = False
         self.program = Program()
         self.line = 0
@@ -199,7 +200,8 @@ class _Machine:
 
     def _speeds_and_tools(self, values: dict[str, Word]) -> None:
         if "S" in values:
-            self._event(f"S{values['S'].value:.10g}")
+            self.speed = values["S"].value
+            self._event(f"S{self.speed:.10g}")
         if "T" in values:
             self._event(f"T{values['T'].value:.0f}")
 
@@ -237,6 +239,8 @@ class _Machine:
                 raise self._refused("G93 needs F in every block")
         elif not self.feed[0]:
             raise self._refused("no feed")
+        if self.modal["feed"] == 950 and self.dialect.name == "linuxcnc" and not self.speed:
+            raise self._refused("G95 without spindle speed")
 
     def _target(self, values: dict[str, Word]) -> dict[str, float]:
         """Return the position after the axis words, known axes only."""

@@ -204,6 +204,7 @@ class LinuxCNC(gx.Dialect):
         of_linear_axes=True,
         along_lines=True,
         least_inverse_rate=0.1,
+        turns_need_speed=True,
     )
     motion_rule = gx.MotionRule(
         lone_codes_count=True, g28_without_axes=True, rounds_corners=True, cycles_stop=True
