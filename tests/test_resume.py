@@ -260,6 +260,26 @@ def test_planes_and_tips_have_to_be_left(tmp_path: Path) -> None:
         assert "G43.4" not in found.stdout
 
 
+@pytest.mark.parametrize("dialect", ["fanuc", "grbl", "linuxcnc"])
+@pytest.mark.parametrize("placed", ["G54 G55", "G55", "G54"])
+@pytest.mark.parametrize("offsets", ["G54 G55", "G55 G54", "G55 G55", "G54 G56"])
+def test_positions_count_from_the_offset_that_the_program_states_first(
+    tmp_path: Path, dialect: str, placed: str, offsets: str
+) -> None:
+    """And not from that of the restart, where the machine file has the places of some."""
+    first, then = offsets.split()
+    places = (
+        f"[work-offset.{name}]\nX = {n}.5\nZ = -7.0\n" for n, name in enumerate(placed.split())
+    )
+    (tmp_path / "machine.toml").write_text("format = 1\n" + "".join(places))
+    head = f"G21 G90 G94 G17 {first}\nG0 X1. Y2. Z20.\nG1 F100. X3.\n"
+    text = f"{head}{then}\nG90 G0 X8. Y-4. Z10.\nG1 X1.\nG54\nG0 X2. Y2. Z5.\nM2\n"
+    words = "--clearance", "90", "-m", str(tmp_path / "machine.toml")
+    lines = resumed(tmp_path, text, dialect, 6, *words)
+    assert any(line.endswith(f" {then}") for line in lines)
+    assert lines[-5:-3] == ["G0 Z90.", "G0 X8. Y-4."]
+
+
 # --- what it prints ---
 
 

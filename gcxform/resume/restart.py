@@ -10,6 +10,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location, UsageError, VerificationError
 from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.modal.frame_state import FrameState
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning.tables import CYCLES, GROUPS, NUMBER, code_of
 from gcxform.modal.reader import WindowReader
@@ -248,6 +249,8 @@ class Restart:
             other.state.position[:] = self.state.position
             tool = other.state.frames.in_spindle
             other.state.frames = replace(self.state.frames, known=True, in_spindle=tool)
+        else:
+            other.state.frames = self._counted_alike(other.state.frames)
         if not preamble.change_tool:
             tool = self.state.frames.in_spindle
             other.state.frames = replace(other.state.frames, in_spindle=tool)
@@ -265,6 +268,16 @@ class Restart:
         other.state.percents = self.state.percents
         other.state.rapid = self.state.rapid
         return other
+
+    def _counted_alike(self, frames: FrameState) -> FrameState:
+        """Return frames of a start whose positions count from where those of the program do.
+
+        That is the work offset which the program states first, and not the one of the preamble: it
+        is said to have been given, no times anew.
+        """
+        first = self.state.frames.first
+        counted = frames.starting_in(first, self.reading.work_offsets, True)
+        return replace(counted, work=frames.work, given={first: 0})
 
     def _compare_states(self, mine: State, other: State, preamble: Preamble) -> None:
         """Raise VerificationError unless the two states mean the same."""
