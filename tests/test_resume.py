@@ -373,6 +373,21 @@ def test_parameters_that_a_line_not_read_may_take_are_no_restart(tmp_path: Path)
     assert call(*words, str(tmp_path / "p.nc")).exit_code == 0
 
 
+def test_a_feed_that_a_line_not_read_may_take_is_no_restart(tmp_path: Path) -> None:
+    """Behind G20 nobody knows what F was worth, and the plunge leaves another one in force."""
+    text = "G21 G90 G94 G17\nG0 X0 Y0 Z5.\nG1 X3. F100.\nG20\nG0 X1.\nG1 X2.\nM30\n"
+    words = ["resume", "-f", "fanuc", "--clearance", "50", "--plunge", "20", str(tmp_path / "p.nc")]
+    (tmp_path / "p.nc").write_text(text)
+    found = call(*words, "--line", "5")
+    assert (found.exit_code, found.stdout) == (3, "")
+    assert "line 6, which is not read, may take it" in found.stderr
+    assert call(*words, "--line", "4").exit_code == 0  # with F100. in force before G20
+    for known in ("G0 X1. F9.", "G0 X1.\nM98 P7"):
+        text = text.replace("F100.", "") if "P7" in known else text
+        (tmp_path / "p.nc").write_text(text.replace("G1 X3.", "").replace("G0 X1.", known))
+        assert call(*words, "--line", "5").exit_code == 0
+
+
 def test_the_proof_sees_a_wrong_preamble() -> None:
     """Whatever is broken in the text, the comparison must notice."""
     text = b"G21 G90 G94 G17\nG0 X0 Y0 Z5\nG1 Z1 F100\nG91 X1\nX2\nM2\n"

@@ -46,6 +46,7 @@ class Restart:
     def __post_init__(self) -> None:
         self.axes = self.reading.axes_of(self.source, self.dialect)
         self.placed: set[str] = set()  # axes that are programmed before the line
+        self.fed = False  # whether a feed is
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)
         self.memory = Memory(self.dialect)
@@ -97,6 +98,7 @@ class Restart:
             if open_ and not self.reading.blocks_with_a_slash(self.dialect):
                 self.memory.refuse(at, "a switch decides whether a block before is executed")
             self.placed.update(meanings[number].axes)
+            self.fed |= "F" in meanings[number].slots
         grammar = self.dialect.load_grammar()
         inch = found.modes.inch
         for event in found.path.events:
@@ -236,7 +238,9 @@ class Restart:
                 expected = mine.interpret(window, self.reader.table)
             except InputError as error:
                 mine.state = before
-                return self._up_to(error, window, mine, theirs)
+                open_feed = preamble.approach is not None and self.fed
+                open_feed &= bool(np.isnan(self.state.feed))
+                return self._up_to(error, window, (mine, theirs), open_feed)
             found = theirs.interpret(window, self.reader.table)
             self._compare(expected, found)
         return None
@@ -298,9 +302,13 @@ class Restart:
         return VerificationError.one("GX601", message, Location(self.source.name, line))
 
     def _up_to(
-        self, error: InputError, window: Window, mine: Interpreter, theirs: Interpreter
+        self, error: InputError, window: Window, both: tuple[Interpreter, ...], open_feed: bool
     ) -> Diagnostic:
-        """Compare the lines before the one that is refused; return a note about where it ends."""
+        """Compare the lines before the one that is refused; return a note about where it ends.
+
+        `open_feed`: a feed was in force that nobody knows, and the plunge has another one.
+        """
+        mine, theirs = both
         first = error.diagnostics[0]
         line = first.where.line if first.where else self.line
         if line <= self.line:
@@ -315,6 +323,12 @@ class Restart:
             raise self.refusal(
                 "no restart is safe here: the program has set parameters before, which are not "
                 f"restated, and line {line}, which is not read, may take them"
+            )
+        if open_feed and np.isnan(mine.state.feed):
+            raise self.refusal(
+                "no restart is safe here: which feed is in force nobody knows, the restart plunges "
+                f"with its own, and line {line}, which is not read, may take it",
+                "write F behind what has changed units or the feed mode",
             )
         hint = "from there on the program does what it did, if all is as it was in this line"
         message = f"compared up to line {line - 1}: line {line} is not read ({first.code})"
