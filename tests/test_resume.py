@@ -148,6 +148,9 @@ HEAD = "G21 G90 G94 G17\nG0 X0. Y0. Z5.\nG1 Z1. F100.\n"  # three lines
         ("fanuc", "T1 M6\nX1. Y1.\n", 5, "where X, Y, Z stands is not known"),
         ("fanuc", "T1 M6\nX1. Y1.\nZ3.\nX2.\n", 6, "where Z stands is not known"),
         ("fanuc", "M77\nX1. Y1.\n", 5, "M77 switched"),
+        ("fanuc", "G68 X0 Y0 R30.\nX1. Y1.\nX2.\n", 6, "in line 4 G68 was in force"),
+        ("fanuc", "G52 X1. Y2.\nG52 X0\nX1. Y1.\n", 6, "in line 5 G52 was in force"),
+        ("fanuc", "G92 X1.\nG92 X0\nX1. Y1.\n", 6, "in line 4 G92 was in force"),
         ("haas", "G55\nX1. Y1.\n", 5, "where X, Y, Z stands is not known"),
         ("linuxcnc", "G93 G1 X5 F2\nX6 F2\n", 5, "at which feed"),
     ],
@@ -239,6 +242,25 @@ def test_usage(tmp_path: Path) -> None:
         assert code in found.stderr
     low = call(*words, "--line", "4", "--clearance", "0.5mm")
     assert (low.exit_code, "below Z1" in low.stderr) == (3, True)
+
+
+@pytest.mark.parametrize(
+    ("turned", "ended"),
+    [
+        ("G68 X1. Y2. R30.", "G69"),
+        ("G51.1 X3.", "G50.1 X0"),
+        ("G52 X4. Y5.", "G52 X0 Y0"),
+    ],
+)
+def test_words_that_are_turned_no_more_are_restated(
+    tmp_path: Path, turned: str, ended: str
+) -> None:
+    """Its end goes along: the control may have been stopped within."""
+    text = f"{HEAD}{turned}\nG0 X1. Y1. Z9.\n{ended}\nX7. Y2. Z3.\nG1 X8. F5.\nM30\n"
+    lines = resumed(tmp_path, text, "fanuc", 8, "--clearance", "50")
+    assert ended in lines
+    assert turned not in lines
+    assert lines.index(ended) < lines.index("G0 X7. Y2.") < lines.index("G1 Z3. F100.")
 
 
 def test_planes_and_tips_have_to_be_left(tmp_path: Path) -> None:

@@ -120,6 +120,10 @@ class Restart:
         if self.memory.unsafe is not None:
             line, reason = self.memory.unsafe
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
+        frames = state.frames
+        if frames.turns or frames.polar or any((*frames.local, *frames.preset)):
+            line, reason = self.memory.turned
+            raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
         if state.frames.plane is not None:
