@@ -148,6 +148,9 @@ HEAD = "G21 G90 G94 G17\nG0 X0. Y0. Z5.\nG1 Z1. F100.\n"  # three lines
         ("fanuc", "T1 M6\nX1. Y1.\n", 5, "where X, Y, Z stands is not known"),
         ("fanuc", "T1 M6\nX1. Y1.\nZ3.\nX2.\n", 6, "where Z stands is not known"),
         ("fanuc", "M77\nX1. Y1.\n", 5, "M77 switched"),
+        ("fanuc", "G68 X0 Y0 R30.\nX1. Y1.\nX2.\n", 6, "in line 4 G68 was in force"),
+        ("fanuc", "G52 X1. Y2.\nG52 X0\nX1. Y1.\n", 6, "in line 5 G52 was in force"),
+        ("fanuc", "G92 X1.\nG92 X0\nX1. Y1.\n", 6, "in line 4 G92 was in force"),
         ("haas", "G55\nX1. Y1.\n", 5, "where X, Y, Z stands is not known"),
         ("linuxcnc", "G93 G1 X5 F2\nX6 F2\n", 5, "at which feed"),
     ],
@@ -241,6 +244,25 @@ def test_usage(tmp_path: Path) -> None:
     assert (low.exit_code, "below Z1" in low.stderr) == (3, True)
 
 
+@pytest.mark.parametrize(
+    ("turned", "ended"),
+    [
+        ("G68 X1. Y2. R30.", "G69"),
+        ("G51.1 X3.", "G50.1 X0"),
+        ("G52 X4. Y5.", "G52 X0 Y0"),
+    ],
+)
+def test_words_that_are_turned_no_more_are_restated(
+    tmp_path: Path, turned: str, ended: str
+) -> None:
+    """Its end goes along: the control may have been stopped within."""
+    text = f"{HEAD}{turned}\nG0 X1. Y1. Z9.\n{ended}\nX7. Y2. Z3.\nG1 X8. F5.\nM30\n"
+    lines = resumed(tmp_path, text, "fanuc", 8, "--clearance", "50")
+    assert ended in lines
+    assert turned not in lines
+    assert lines.index(ended) < lines.index("G0 X7. Y2.") < lines.index("G1 Z3. F100.")
+
+
 def test_planes_and_tips_have_to_be_left(tmp_path: Path) -> None:
     """In one no restart is safe; behind it G69 is restated, as where a program has it alone."""
     machine = Path(__file__).parents[1] / "examples" / "three-plus-two" / "machine.toml"
@@ -258,6 +280,26 @@ def test_planes_and_tips_have_to_be_left(tmp_path: Path) -> None:
         assert "G69" in found.stdout.splitlines()
         assert "G68.2" not in found.stdout
         assert "G43.4" not in found.stdout
+
+
+@pytest.mark.parametrize("dialect", ["fanuc", "grbl", "linuxcnc"])
+@pytest.mark.parametrize("placed", ["G54 G55", "G55", "G54"])
+@pytest.mark.parametrize("offsets", ["G54 G55", "G55 G54", "G55 G55", "G54 G56"])
+def test_positions_count_from_the_offset_that_the_program_states_first(
+    tmp_path: Path, dialect: str, placed: str, offsets: str
+) -> None:
+    """And not from that of the restart, where the machine file has the places of some."""
+    first, then = offsets.split()
+    places = (
+        f"[work-offset.{name}]\nX = {n}.5\nZ = -7.0\n" for n, name in enumerate(placed.split())
+    )
+    (tmp_path / "machine.toml").write_text("format = 1\n" + "".join(places))
+    head = f"G21 G90 G94 G17 {first}\nG0 X1. Y2. Z20.\nG1 F100. X3.\n"
+    text = f"{head}{then}\nG90 G0 X8. Y-4. Z10.\nG1 X1.\nG54\nG0 X2. Y2. Z5.\nM2\n"
+    words = "--clearance", "90", "-m", str(tmp_path / "machine.toml")
+    lines = resumed(tmp_path, text, dialect, 6, *words)
+    assert any(line.endswith(f" {then}") for line in lines)
+    assert lines[-5:-3] == ["G0 Z90.", "G0 X8. Y-4."]
 
 
 # --- what it prints ---
@@ -351,6 +393,21 @@ def test_parameters_that_a_line_not_read_may_take_are_no_restart(tmp_path: Path)
     assert "line 6, which is not read, may take them" in found.stderr
     (tmp_path / "p.nc").write_text(text.replace("#1=5\n", "\n"))
     assert call(*words, str(tmp_path / "p.nc")).exit_code == 0
+
+
+def test_a_feed_that_a_line_not_read_may_take_is_no_restart(tmp_path: Path) -> None:
+    """Behind G20 nobody knows what F was worth, and the plunge leaves another one in force."""
+    text = "G21 G90 G94 G17\nG0 X0 Y0 Z5.\nG1 X3. F100.\nG20\nG0 X1.\nG1 X2.\nM30\n"
+    words = ["resume", "-f", "fanuc", "--clearance", "50", "--plunge", "20", str(tmp_path / "p.nc")]
+    (tmp_path / "p.nc").write_text(text)
+    found = call(*words, "--line", "5")
+    assert (found.exit_code, found.stdout) == (3, "")
+    assert "line 6, which is not read, may take it" in found.stderr
+    assert call(*words, "--line", "4").exit_code == 0  # with F100. in force before G20
+    for known in ("G0 X1. F9.", "G0 X1.\nM98 P7"):
+        text = text.replace("F100.", "") if "P7" in known else text
+        (tmp_path / "p.nc").write_text(text.replace("G1 X3.", "").replace("G0 X1.", known))
+        assert call(*words, "--line", "5").exit_code == 0
 
 
 def test_the_proof_sees_a_wrong_preamble() -> None:

@@ -72,6 +72,8 @@ ACTS_RESTATED: Final = frozenset(
 """What codes that act on the frame may do before a restart: the rest is not restated."""
 ACTS_LEFT: Final = frozenset({"define-plane", "orient", "swivel", "turn-to", "follow-tip"})
 """What others leave behind no restart is in: a plane, or a tip."""
+ACTS_ENDED: Final = frozenset({"rotate", "scale", "mirror", "polar", "local"})
+"""What others leave behind has to be at its end: by G69, G50, G50.1, G15, or G52 with zeros."""
 ONE_BLOCK: Final = frozenset({"G4", "G9", "G28", "G30", "G53"})
 """Codes that hold for one block."""
 COOLANT_OFF: Final[Mapping[str, tuple[str, ...]]] = {"M9": ("M7", "M8"), "M89": ("M88",)}
@@ -85,6 +87,7 @@ class Memory:
     length    the tool length in force, which the first move along Z states
     ready     the T word last programmed; `loaded` that of the last tool change, None: none so far
     unsafe    the first line (from 1) after which no restart is safe, and why
+    turned    the same of words that are turned or shifted, which only hold until they are no more
     """
 
     dialect: type[Dialect]
@@ -96,11 +99,16 @@ class Memory:
     coolant: list[str] = field(default_factory=list)
     length: str = ""
     unsafe: tuple[int, str] | None = None
+    turned: tuple[int, str] = (0, "")
 
     def look(self, shape: Shape, meaning: Meaning, line: int) -> None:
         """Note what blocks of a shape hold that cannot be restated; `line` has it, from 1."""
         for word in shape.block.words:
-            if reason := self._reason(word):
+            reason = self._reason(word)
+            code = self.dialect.codes.get(_name(word))
+            if reason and code is not None and code.act in ACTS_ENDED:
+                self.turned = max(self.turned, (line, reason))
+            elif reason:
                 self.refuse(line, reason)
 
     def refuse(self, line: int, reason: str) -> None:
@@ -112,7 +120,7 @@ class Memory:
         """Return why a word keeps a restart from being safe, nothing if it does not."""
         if not isinstance(word.value, Number) or word.address not in "GM":
             return ""
-        name = f"{word.address}{round(word.value.value, 6):g}"
+        name = _name(word)
         if word.address == "G":
             code = self.dialect.codes.get(name)
             if code is None or (
@@ -182,6 +190,12 @@ class Memory:
             self.coolant.append(code)
 
 
+def _name(word: Word) -> str:
+    """Return the code that a word is, "" for an expression."""
+    number = word.value
+    return f"{word.address}{round(number.value, 6):g}" if isinstance(number, Number) else ""
+
+
 def words_of(block: Block, letters: str, code: str = "") -> str:
     """Return a code of a block with the words of some letters, as they are written there."""
     return " ".join(_texts(block, letters, code))
@@ -191,8 +205,7 @@ def _texts(block: Block, letters: str, code: str) -> Iterator[str]:
     for word in block.words:
         if not isinstance(word.value, Number):
             continue
-        name = f"{word.address}{round(word.value.value, 6):g}"
-        if word.address in letters or (code and name == code):
+        if word.address in letters or (code and _name(word) == code):
             yield block.text[word.start : word.end].upper()
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from gcxform.diagnostics import Diagnostic, InputError, Location, UsageError, VerificationError
 from gcxform.dialect.dialect import INCH, Dialect
+from gcxform.modal.frame_state import FrameState
 from gcxform.modal.interpreter import Interpreted, Interpreter
 from gcxform.modal.meaning.tables import CYCLES, GROUPS, NUMBER, code_of
 from gcxform.modal.reader import WindowReader
@@ -45,6 +46,7 @@ class Restart:
     def __post_init__(self) -> None:
         self.axes = self.reading.axes_of(self.source, self.dialect)
         self.placed: set[str] = set()  # axes that are programmed before the line
+        self.fed = False  # whether a feed is
         self.reader = WindowReader(self.dialect)
         self.interpreter = self._interpreter(self.reading)
         self.memory = Memory(self.dialect)
@@ -96,6 +98,7 @@ class Restart:
             if open_ and not self.reading.blocks_with_a_slash(self.dialect):
                 self.memory.refuse(at, "a switch decides whether a block before is executed")
             self.placed.update(meanings[number].axes)
+            self.fed |= "F" in meanings[number].slots
         grammar = self.dialect.load_grammar()
         inch = found.modes.inch
         for event in found.path.events:
@@ -116,6 +119,10 @@ class Restart:
         state = self.state
         if self.memory.unsafe is not None:
             line, reason = self.memory.unsafe
+            raise self.refusal(f"no restart is safe here: in line {line} {reason}")
+        frames = state.frames
+        if frames.turns or frames.polar or any((*frames.local, *frames.preset)):
+            line, reason = self.memory.turned
             raise self.refusal(f"no restart is safe here: in line {line} {reason}")
         if state.ended:
             raise self.refusal("the program has ended before this line")
@@ -235,7 +242,9 @@ class Restart:
                 expected = mine.interpret(window, self.reader.table)
             except InputError as error:
                 mine.state = before
-                return self._up_to(error, window, mine, theirs)
+                open_feed = preamble.approach is not None and self.fed
+                open_feed &= bool(np.isnan(self.state.feed))
+                return self._up_to(error, window, (mine, theirs), open_feed)
             found = theirs.interpret(window, self.reader.table)
             self._compare(expected, found)
         return None
@@ -248,6 +257,8 @@ class Restart:
             other.state.position[:] = self.state.position
             tool = other.state.frames.in_spindle
             other.state.frames = replace(self.state.frames, known=True, in_spindle=tool)
+        else:
+            other.state.frames = self._counted_alike(other.state.frames)
         if not preamble.change_tool:
             tool = self.state.frames.in_spindle
             other.state.frames = replace(other.state.frames, in_spindle=tool)
@@ -265,6 +276,16 @@ class Restart:
         other.state.percents = self.state.percents
         other.state.rapid = self.state.rapid
         return other
+
+    def _counted_alike(self, frames: FrameState) -> FrameState:
+        """Return frames of a start whose positions count from where those of the program do.
+
+        That is the work offset which the program states first, and not the one of the preamble: it
+        is said to have been given, no times anew.
+        """
+        first = self.state.frames.first
+        counted = frames.starting_in(first, self.reading.work_offsets, True)
+        return replace(counted, work=frames.work, given={first: 0})
 
     def _compare_states(self, mine: State, other: State, preamble: Preamble) -> None:
         """Raise VerificationError unless the two states mean the same."""
@@ -285,9 +306,13 @@ class Restart:
         return VerificationError.one("GX601", message, Location(self.source.name, line))
 
     def _up_to(
-        self, error: InputError, window: Window, mine: Interpreter, theirs: Interpreter
+        self, error: InputError, window: Window, both: tuple[Interpreter, ...], open_feed: bool
     ) -> Diagnostic:
-        """Compare the lines before the one that is refused; return a note about where it ends."""
+        """Compare the lines before the one that is refused; return a note about where it ends.
+
+        `open_feed`: a feed was in force that nobody knows, and the plunge has another one.
+        """
+        mine, theirs = both
         first = error.diagnostics[0]
         line = first.where.line if first.where else self.line
         if line <= self.line:
@@ -302,6 +327,12 @@ class Restart:
             raise self.refusal(
                 "no restart is safe here: the program has set parameters before, which are not "
                 f"restated, and line {line}, which is not read, may take them"
+            )
+        if open_feed and np.isnan(mine.state.feed):
+            raise self.refusal(
+                "no restart is safe here: which feed is in force nobody knows, the restart plunges "
+                f"with its own, and line {line}, which is not read, may take it",
+                "write F behind what has changed units or the feed mode",
             )
         hint = "from there on the program does what it did, if all is as it was in this line"
         message = f"compared up to line {line - 1}: line {line} is not read ({first.code})"

@@ -382,6 +382,13 @@ MUTATIONS = (
         RUNS,
     ),
     Mutation(
+        "planes: G52 and G92 of a rotary axis turn no plane",
+        "gcxform/modal/frames/planes.py",
+        "state.preset[k] + state.local[k], f",
+        "0.0 * state.preset[k] + 0.0 * state.local[k], f",
+        f"{CORPUS}[dialects/fanuc/tilted-plane-local-turned]",
+    ),
+    Mutation(
         "frames: nobody says which zeros are not left in the control",
         "gcxform/proof/events.py",
         "if self.folded else 0",

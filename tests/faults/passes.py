@@ -179,6 +179,20 @@ MUTATIONS = (
         RIGID_PASS,
     ),
     Mutation(
+        "volumetric: part-origin forgets that the work offset turns the head",
+        "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
+        "angles = angles + np.array([zero.get(letter, 0.0) for letter in letters])",
+        "angles = angles + 0.0 * np.array([zero.get(letter, 0.0) for letter in letters])",
+        f"{CORPUS}[rtcp/volumetric-turned-offset-part-origin]",
+    ),
+    Mutation(
+        "volumetric: a head that nobody has said stands at 0",
+        "plugins/gcxform_plugins/passes/volumetric/levers.py",
+        "rows = np.flatnonzero(cuts & _unknown(path, letter))[:1]",
+        "rows = np.flatnonzero(cuts & ~cuts & _unknown(path, letter))[:1]",
+        f"{CORPUS}[rtcp/volumetric-turned-unsaid]",
+    ),
+    Mutation(
         "volumetric: an axis that counts from elsewhere counts as standing nowhere",
         "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
         "known = np.isfinite(path.end[:, elsewhere]).any(axis=1)",

@@ -173,9 +173,7 @@ def standing(
         if axis.letter in state.axes:
             k = state.axes.index(axis.letter)
             found[n] = asked.position[k] - state.machine[k]
-            if abs(state.zero_of(state.work)[k] - state.machine[k]) > EQUAL:
-                message = f"{asked.code}: {state.work} turns {axis.letter}, and {turned} with it"
-                raise ActError("GX213", message, f"say {turned} in a work offset that does not")
+            _check_unturned(state, asked, k, turned)
         if np.isnan(found[n]) and not open_:
             raise ActError(
                 "GX213",
@@ -183,6 +181,23 @@ def standing(
                 f"write {axis.letter} before, or say start = {{ {axis.letter} = ... }} in [input]",
             )
     return np.asarray(np.nan_to_num(found))
+
+
+def _check_unturned(state: FrameState, asked: Asked, k: int, turned: str) -> None:
+    """Refuse a zero of a rotary axis, in column k, off that of the machine. Raises ActError.
+
+    Whether X, Y and Z then lie on the table as that turns them no manual says; G52 and G92 shift
+    the zero of a work offset as its own number does.
+    """
+    letter = state.axes[k]
+    elsewhere = f"say {turned} in a work offset that does not"
+    for what, shift, hint in (
+        (state.work, state.zero_of(state.work)[k] - state.machine[k], elsewhere),
+        ("G52 or G92", state.preset[k] + state.local[k], f"end it before {turned}"),
+    ):
+        if abs(shift) > EQUAL:
+            message = f"{asked.code}: {what} turns {letter}, and {turned} with it"
+            raise ActError("GX213", message, hint)
 
 
 def _check_ways(chain: Chain, asked: Asked) -> None:

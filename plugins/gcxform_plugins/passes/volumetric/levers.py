@@ -5,9 +5,9 @@ function of the angles alone, which go in proportion along a move; so it goes al
 error between two points of a line is no longer what the error model alone makes of it.
 
 Where no head is turned in a window there is no lever, and nothing of this is computed. Refused are
-arcs along which the head turns, cuts without a tool length, angles that are not known, and feeds
-per minute where the linear axes move by little more than the correction: the control would measure
-the feed along that.
+arcs along which the head turns, cuts without a tool length, cuts at angles that are not known, and
+feeds per minute where the linear axes move by little more than the correction: the control would
+measure the feed along that.
 """
 
 from __future__ import annotations
@@ -72,6 +72,7 @@ def lever_of(path: gx.Toolpath, context: gx.PassContext, held: Floats) -> Lever 
     """
     machine = context.machine
     assert machine is not None
+    check_known(path, machine.head)
     begin, stop = (_angles(path, context, ends) for ends in (_before(path), path.end))
     turned = (begin != 0.0).any(axis=1) | (stop != 0.0).any(axis=1)
     if not turned.any():
@@ -109,6 +110,25 @@ def _angles(path: gx.Toolpath, context: gx.PassContext, positions: Floats) -> Fl
 # --- what is refused ---
 
 
+def check_known(path: gx.Toolpath, head: tuple[str, ...]) -> None:
+    """Refuse cuts where an angle of the head is not known: that it is at 0 nothing says."""
+    cuts = path.kind != gx.Kind.RAPID
+    for letter in head:
+        rows = np.flatnonzero(cuts & _unknown(path, letter))[:1]
+        if len(rows):
+            message = f"{UNKNOWN}the angle of {letter} is not"
+            raise path.refuse("GX314", rows, message, f"program {letter} before")
+
+
+def _unknown(path: gx.Toolpath, letter: str) -> Flags:
+    """Return in which rows (n,) the angle of an axis of the head is not known."""
+    if letter not in path.axes:
+        return np.ones(len(path), np.bool_)
+    column = path.axes.index(letter)
+    from_nowhere = np.isnan(path.start[:, column]) & (path.kind != gx.Kind.RAPID)
+    return np.asarray(np.isnan(path.end[:, column]) | from_nowhere)
+
+
 def _check_chain(path: gx.Toolpath, context: gx.PassContext, turned: Flags) -> None:
     """Refuse a head of which no angle is known, and axes that the machine has not."""
     machine = context.machine
@@ -142,10 +162,9 @@ def _check_tools(path: gx.Toolpath, turned: Flags) -> None:
 
 def _check_angles(path: gx.Toolpath, head: tuple[str, ...], turned: Flags) -> None:
     """Refuse angles that are not known, or count from elsewhere, where the head is turned."""
-    start, rapid = path.start, path.kind == gx.Kind.RAPID
     for letter in head:
         column = path.axes.index(letter)
-        unknown = np.isnan(path.end[:, column]) | (np.isnan(start[:, column]) & ~rapid)
+        unknown = _unknown(path, letter)
         apart = np.array([frame.origin[column] != path.first for frame in path.frames])
         rows = np.flatnonzero(turned & (unknown | apart[path.frame]))
         if len(rows):

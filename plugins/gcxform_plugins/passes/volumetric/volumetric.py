@@ -22,7 +22,7 @@ from gcxform.vocabulary import Flags
 from gcxform_plugins.passes.volumetric.bored import Bored
 from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
 from gcxform_plugins.passes.volumetric.forward.window import Window, left_to_machine
-from gcxform_plugins.passes.volumetric.levers import UNKNOWN, lever_of
+from gcxform_plugins.passes.volumetric.levers import UNKNOWN, check_known, lever_of
 from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond
@@ -161,8 +161,12 @@ class Volumetric(VolumetricOptions, gx.Pass):
         machine = context.machine
         if machine is None or not self.model.model.needs_tool:
             return
-        columns = [path.axes.index(letter) for letter in machine.head if letter in path.axes]
-        turned = (np.nan_to_num(path.end[:, columns]) != 0.0).any(axis=1)
+        check_known(path, machine.head)
+        letters = [letter for letter in machine.head if letter in path.axes]
+        zero = machine.work_offsets.get(path.first, {})
+        angles = path.end[:, [path.axes.index(letter) for letter in letters]]
+        angles = angles + np.array([zero.get(letter, 0.0) for letter in letters])
+        turned = (np.nan_to_num(angles) != 0.0).any(axis=1)
         if turned.any():
             message = f"{UNKNOWN}part-origin says nothing of the axes"
             hint = "give a machine file with [work-offset.*] and [tool.*] instead of part-origin"
