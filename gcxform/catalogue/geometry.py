@@ -46,7 +46,8 @@ CODES: dict[str, tuple[str, str]] = {
     "GX309": (
         "The compensated position does not converge",
         "Compensation looks for the command which, together with the error of the machine there, "
-        "gives the programmed position; it did not settle. The error model jumps at that place, as "
+        "gives the programmed position; it did not settle. Or a move leads over a place at which "
+        "the error jumps by more than the tolerance. The error model jumps at that place, as "
         'it does at the border of a table with `outside = "zero"`. Choose another policy, or keep '
         "the program away from the border.",
     ),

@@ -193,6 +193,20 @@ MUTATIONS = (
         f"{CORPUS}[rtcp/volumetric-turned-unsaid]",
     ),
     Mutation(
+        "volumetric: a leap of the error ahead counts as one aside",
+        "plugins/gcxform_plugins/passes/volumetric/forward/lines.py",
+        "off = np.sqrt(((jump - ahead[:, None] * along) ** 2).sum(axis=1))",
+        "off = np.sqrt((jump**2).sum(axis=1))",
+        f"{CORPUS}[volumetric/outside-zero-ahead]",
+    ),
+    Mutation(
+        "volumetric: no leap of the error is seen before the proof",
+        "plugins/gcxform_plugins/passes/volumetric/forward/lines.py",
+        "wrong = np.flatnonzero(off > window.room)[:1]",
+        "wrong = np.flatnonzero(off > window.room)[:0]",
+        f"{CORPUS}[volumetric/outside-zero-aside]",
+    ),
+    Mutation(
         "volumetric: an axis that counts from elsewhere counts as standing nowhere",
         "plugins/gcxform_plugins/passes/volumetric/volumetric.py",
         "known = np.isfinite(path.end[:, elsewhere]).any(axis=1)",

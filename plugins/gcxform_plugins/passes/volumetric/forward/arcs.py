@@ -15,6 +15,7 @@ from gcxform_plugins.passes.volumetric.forward.window import Window
 
 FEWEST, MOST = 8, 256  # points at which a piece is looked at
 AT_ONCE = 200_000  # points looked at together
+SHORTEST = 2.0**-32  # of an arc; no piece that follows the error of a machine is so short
 HALVINGS = 24
 REFINEMENTS = 6  # a piece is a sixty-fourth shorter than it could be, at most
 FEW, AHEAD = (
@@ -115,13 +116,18 @@ class ArcFitter:
         return None
 
     def _farthest_reaching(self, row: Ints) -> tuple[Ints, Floats]:
-        """Return row and part of the cuts of arcs when each piece is as long as it can be."""
+        """Return row and part of the cuts of arcs when each piece is as long as it can be.
+
+        Raises InputError where pieces come no nearer to a place at which the error jumps.
+        """
         at, reach = np.zeros(len(row)), np.full(len(row), 0.5)
         cut_rows, cut_parts = [np.empty(0, np.int64)], [np.empty(0)]
         while len(row):
             reach = self._reach(row, at, np.minimum(2 * reach, 1 - at))
             at = at + reach
             on = at < 1.0
+            if len(stuck := np.flatnonzero(on & (reach < SHORTEST))):
+                raise self.window.refuse_jump(row[stuck[:1]])
             row, at, reach = row[on], at[on], reach[on]
             cut_rows.append(row)
             cut_parts.append(at)

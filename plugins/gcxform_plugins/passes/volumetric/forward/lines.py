@@ -31,6 +31,7 @@ NEGLIGIBLE = 1e-5  # mm; a cut that mends less is not worth a block: a hundredth
 CURVED = 1e-4  # mm; what may stay between two cuts, without a tolerance, where the error is curved
 AHEAD, AHEAD_AT_MOST = 64, 1024  # places
 CURVED_SHARE = 0.25  # of a tolerance, for the same
+ASIDE = 1e-6  # mm; so far before and behind a border the error is what it is on either side
 BEHIND = 10.0  # times what it moves the machine aside counts what a command is ahead or behind
 
 
@@ -46,6 +47,7 @@ def cuts_of_lines(window: Window, entry: Floats, commands: Floats) -> tuple[Ints
     whole = np.isin(path.form, TIED)
     lines = (path.kind == gx.Kind.LINE) & ((path.form == gx.Form.PLAIN) | whole)
     lines &= path.starts_known & ~window.left
+    _refuse_jumps(window, points, lines)
     row, part = _at_nodes(window, bending, lines)
     exact = step.tolerance is None or step.split == "nodes"
     most = np.full(len(path), window.room)
@@ -63,6 +65,32 @@ def cuts_of_lines(window: Window, entry: Floats, commands: Floats) -> tuple[Ints
         hint = "give volumetric a larger tolerance, or the move a shorter way"
         raise path.refuse("GX506", row[whole[row]][:1], message, hint)
     return row, part
+
+
+def _refuse_jumps(window: Window, points: Floats, lines: Flags) -> None:
+    """Refuse lines on whose way the error jumps aside of them by more than they may be off.
+
+    So it does at the border of its tables where it is zero outside; no cut mends that. `points`
+    (n + 1, 3) mm are the ends of commands.
+    """
+    step, path = window.step, window.path
+    if step.outside is not gx.Outside.ZERO:
+        return
+    ends = (np.array(step.model.model.range_of(axis)) for axis in range(3))
+    borders = [border[np.isfinite(border)] for border in ends]
+    row, part, _, _ = gx.line_crossings(points, lines, borders)
+    if not len(row):
+        return
+    way = points[row + 1] - points[row]
+    along = way / np.sqrt((way**2).sum(axis=1))[:, None]
+    place, tool = points[row] + part[:, None] * way, window.place.tool_of(row, part)
+    jump = step.error(place - ASIDE * along, tool) - step.error(place + ASIDE * along, tool)
+    turns = (np.nan_to_num(path.end - path.start)[:, 3:] != 0.0).any(axis=1)[row]
+    ahead = np.where(turns, 0.0, (jump * along).sum(axis=1))
+    off = np.sqrt(((jump - ahead[:, None] * along) ** 2).sum(axis=1))
+    wrong = np.flatnonzero(off > window.room)[:1]
+    if len(wrong):
+        raise window.refuse_jump(row[wrong], float(off[wrong][0]))
 
 
 def _at_nodes(window: Window, points: Floats, lines: Flags) -> tuple[Ints, Floats]:

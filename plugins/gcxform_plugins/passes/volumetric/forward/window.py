@@ -83,6 +83,13 @@ class Window:
         model = step.model.model
         return gx.compensate(model, target, step.outside, step.iterations, tool).position
 
+    def refuse_jump(self, rows: Ints, off: float | None = None) -> gx.InputError:
+        """Return the error about a move on whose way the error jumps, `off` (mm) where known."""
+        how_far = "" if off is None else f" by {off * 1000:.3g} um"
+        message = f"on the way of this move the error jumps{how_far}, which no cut mends"
+        hint = "one that is zero outside does at the border of its table: keep away from that"
+        return self.path.refuse("GX309", rows, message, hint)
+
     def refuse_short(self, row: int, shortest: float) -> gx.InputError:
         """Return the error about a move that has to be cut into too short pieces."""
         step = self.step
