@@ -1,11 +1,17 @@
 """A tap in step with the spindle in other languages: `compare` sees all that makes it one."""
 
+import random
+
+import numpy as np
 import pytest
+from seeds_kit import DRAWN
 
 import gcxform as gx
+from gcxform.emit.taps_in_step import TapsInStep
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
+from gcxform.toolpath.path import FeedMode, Form
 
 WORDS = b"G21 G17 G90 G94\nG0 X0 Y0 Z5\nS300 M3\nG33.1 Z-10 K1.25\nG0 Z9\nM2\n"
 AT = Reading({"X": 0.0, "Y": 0.0, "Z": 5.0})
@@ -33,3 +39,73 @@ def test_another_tap_is_another_program(name):
             other = other.replace(old, new)
         assert other != said, what
         assert not gx.compare(first, gx.Program(other.encode(), there, AT), 0.001).same, what
+
+
+TARGETS = ("linuxcnc", "siemens", "heidenhain")
+Hole = tuple[float, float, float, float, float]
+
+
+def drawn(seed: int) -> tuple[bytes, list[Hole]]:
+    """Return a program of a Fanuc that taps, and its holes: X, Y, R, depth, pitch; mm."""
+    draw = random.Random(seed)
+    lines, holes = ["G21 G17 G90 G94 G54", "G0 X0. Y0. Z60."], list[Hole]()
+    for _ in range(draw.randint(1, 3)):
+        code, sense = draw.choice((("G84", "M3"), ("G74", "M4")))
+        speed, pitch = draw.choice((100, 250, 400)), draw.choice((0.5, 0.8, 1.25, 2.0))
+        top, first = draw.choice((1.0, 3.0)), True
+        lines += [f"S{speed} {sense}", *draw.choice(([], [f"M29 S{speed}"]))]
+        for _ in range(draw.randint(1, 3)):
+            x, y, z = (float(draw.randint(-30, 30)) for _ in range(3))
+            z, top = -abs(z) - 1, top if draw.random() < 0.7 else top + 2
+            back, times = draw.choice(("G98", "G99")), draw.choice((1, 1, 2))
+            head = f"{back} {code} F{speed * pitch:.1f}" if first else back
+            lines.append(f"{head} X{x}Y{y}Z{z}R{top}" + (f" K{times}" if times > 1 else ""))
+            holes += [(x, y, top, z, pitch)] * times
+            first = False
+        lines += ["G80", "G0 Z60."]
+    return "\n".join([*lines, "M30", ""]).encode(), holes
+
+
+def tapped(program: gx.Program) -> list[Hole]:
+    """Return the holes of a program, as its own reader has them."""
+    path, found = program.path, list[Hole]()
+    rows = np.flatnonzero(path.form == Form.SYNCHRONISED)
+    assert (path.feed_mode[rows] == FeedMode.PER_TURN).all()
+    for into, out in rows.reshape(-1, 2).tolist():
+        assert (path.end[out] == path.start[into]).all()
+        x, y, z = path.end[into, :3].tolist()
+        assert path.start[into, :2].tolist() == [x, y]
+        found.append((x, y, float(path.start[into, 2]), z, float(path.feed[into])))
+    return found
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_drawn_taps_go_where_and_as_steep_as_they_are_told(name):
+    there = default_registry().dialect(name)
+    for seed in range(DRAWN):
+        text, holes = drawn(seed)
+        fanuc = default_registry().dialect("fanuc")
+        said = Pipeline(fanuc, there, (), taps="in-step").run(text).text
+        found = tapped(gx.Program(said, there, Reading()))
+        assert np.allclose(found, holes, atol=1e-9), text.decode()
+
+
+WRONG = {
+    "another pitch": ("_pitch", lambda self, row, speed: 1.0),
+    "the other hand": ("_check_hand", lambda self, line, code: None),
+    "one that does not wait": ("_refuse_waits", lambda self: None),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_the_proof_finds(what, monkeypatch):
+    fanuc, there = (default_registry().dialect(name) for name in ("fanuc", "linuxcnc"))
+    text = b"G21 G17 G90 G94 G54\nS300 M3\nG0 X0. Y0. Z50.\nG84 X1. Y5. Z-5. R2. F375.\nG80\nM30\n"
+    made = Pipeline(fanuc, there, (), taps="in-step")
+    assert b"K1.25" in made.run(text).text
+    text = text.replace(b"M3\n", b"M4\n") if "hand" in what else text
+    text = text.replace(b"F375.", b"F375. P500") if "wait" in what else text
+    monkeypatch.setattr(TapsInStep, *WRONG[what])
+    with pytest.raises(gx.VerificationError) as error:
+        made.run(text)
+    assert error.value.diagnostics[0].code == "GX601"

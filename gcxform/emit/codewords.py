@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.remedies import put_before
-from gcxform.dialect.code_translation import FOLLOW, HOME, MACHINE
+from gcxform.dialect.code_translation import FOLLOW, HOME, IN_STEP, MACHINE, RIGID
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m, same_tap
@@ -39,8 +39,11 @@ IF_ALIKE: Final = (
     'taps = "alike" in [output] if the spindle turns in step with the feed on both controls, or '
     "a floating chuck makes up for it on both; else let the CAM write the tap for this control"
 )
+IF_IN_STEP: Final = (
+    'taps = "in-step" in [output] if the spindle turns in step with the feed in G74 and G84 of {}, '
+    "and they need no floating chuck; else let the CAM write the tap for this control"
+)
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
-IN_STEP: Final = "G33.1"
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -105,7 +108,7 @@ class CodeWords:
         if said != name:
             text = like(text, said)
         elif self.source is not self.target and code and not self.saying.agrees(name):
-            alike = self.saying.taps_alike
+            alike = self.saying.taps == "alike"
             what = other_in(self.source, self.target, name, code, self.meaning, asked, alike)
             if what:
                 self._refuse(word, name, what)
@@ -133,12 +136,20 @@ class CodeWords:
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name in TAPPING or name == IN_STEP:
             same = name in TAPPING and same_tap(self.source, self.target, name, self.meaning)
-            self.draft.refuse(word, what, IF_ALIKE if same else BY_TAP)
+            self.draft.refuse(word, what, IF_ALIKE if same else self._if_in_step)
         if name not in EXPANDED or cycle is None or cycle.refused:
             self.draft.refuse(word, what)
         if name in self.target.codes:
             what += f" as {self.source.name} means it"
         self.draft.refuse(word, what, put_before("cycles"))
+
+    @property
+    def _if_in_step(self) -> str:
+        """How the user says that taps are in step with the spindle, where the target has a code."""
+        rule = self.source.cycle_rule
+        if rule is not None and rule.taps_float and IN_STEP in self.source.codes:
+            return f"{IN_STEP} is a tap in step with the spindle; {BY_TAP}"
+        return IF_IN_STEP.format(self.source.name) if self.saying.can_tap_in_step else BY_TAP
 
     def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
         """Write the code that has to be stated for a group; return whether this settles it."""
@@ -207,6 +218,8 @@ class CodeWords:
             return ""
         if code.group == "tool" and code.act != SET_TOOL:
             return f"{self.saying.m_coding(name, 'M0')}, where the operator changes it"
+        if code.group == RIGID and self.saying.can_tap_in_step:
+            return self._if_in_step
         left_out = f"{self.saying.dropping(name)} leaves it out"
         unknown = code is self.source.block_rule.unknown_m
         return f"{left_out}{UNKNOWN_M}" if unknown else left_out
