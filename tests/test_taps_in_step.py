@@ -7,6 +7,7 @@ import pytest
 from seeds_kit import DRAWN
 
 import gcxform as gx
+from gcxform.emit.taps_as_cycles import TapsAsCycles
 from gcxform.emit.taps_in_step import TapsInStep
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
@@ -90,6 +91,32 @@ def test_drawn_taps_go_where_and_as_steep_as_they_are_told(name):
         assert np.allclose(found, holes, atol=1e-9), text.decode()
 
 
+def tapped_by_cycles(program: gx.Program) -> list[Hole]:
+    """Return the holes of a program with G84 and G74, their pitches by F and S."""
+    path, found = program.path, list[Hole]()
+    rows = np.flatnonzero(path.form == Form.SYNCHRONISED)
+    speeds = [(e.row, e.values[0][1]) for e in path.events if e.what == "S"]
+    for into, out in rows.reshape(-1, 2).tolist():
+        speed = [value for row, value in speeds if row <= into][-1]
+        x, y, z = path.end[into, :3].tolist()
+        assert (path.end[out] == path.start[into]).all()
+        found.append((x, y, float(path.start[into, 2]), z, float(path.feed[into]) / speed))
+    return found
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_drawn_taps_come_back(name):
+    fanuc, there = (default_registry().dialect(each) for each in ("fanuc", name))
+    for seed in range(DRAWN):
+        text, holes = drawn(seed)
+        said = Pipeline(fanuc, there, (), taps="in-step").run(text).text
+        back = Pipeline(there, fanuc, (), taps="in-step").run(said).text
+        first, last = (gx.Program(each, fanuc, Reading()) for each in (text, back))
+        assert np.allclose(tapped_by_cycles(first), holes, atol=1e-9)
+        assert np.allclose(tapped_by_cycles(last), holes, atol=1e-9), said.decode()
+        assert [e.what for e in last.path.events].count("M29") == len(holes)
+
+
 WRONG = {
     "another pitch": ("_pitch", lambda self, row, speed: 1.0),
     "the other hand": ("_check_hand", lambda self, line, code: None),
@@ -109,3 +136,27 @@ def test_the_proof_finds(what, monkeypatch):
     with pytest.raises(gx.VerificationError) as error:
         made.run(text)
     assert error.value.diagnostics[0].code == "GX601"
+
+
+WRONG_CYCLES = {
+    "another feed": ("pace", lambda taps: taps.pace * 1.01),
+    "the other hand": ("code", lambda taps: np.where(taps.code == 84, 74, taps.code)),
+}
+
+
+@pytest.mark.parametrize("what", WRONG_CYCLES)
+def test_the_proof_of_cycles_finds(what, monkeypatch):
+    words, there = (default_registry().dialect(name) for name in ("linuxcnc", "haas"))
+    made = Pipeline(words, there, (), AT, taps="in-step")
+    assert b"G84 Z-10. X0. Y0. R5. F375." in made.run(WORDS).text
+    name, wrong = WRONG_CYCLES[what]
+    find = TapsAsCycles._find
+
+    def otherwise(self: TapsAsCycles) -> None:
+        find(self)
+        setattr(self, name, wrong(self))
+
+    monkeypatch.setattr(TapsAsCycles, "_find", otherwise)
+    with pytest.raises(gx.GcxformError) as error:
+        made.run(WORDS)
+    assert error.value.diagnostics[0].code in ("GX601", "GX215")

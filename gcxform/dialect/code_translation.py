@@ -31,6 +31,7 @@ from dataclasses import field
 
 from gcxform import diagnostics
 from gcxform.dialect.codes import Code, Effect
+from gcxform.dialect.cycle_rule import TAPPING, Level
 from gcxform.dialect.dialect import Dialect
 from gcxform.values import dataclass
 
@@ -95,6 +96,26 @@ class Saying:
         rule = self.source.cycle_rule
         by_cycle = rule is not None and not rule.taps_float
         return self.crosses and by_cycle and self.target.codes.get(IN_STEP) == Code("motion")
+
+    @property
+    def taps_as_cycles(self) -> bool:
+        """Whether G33.1 of the source is a cycle of the target, which the user says is in step."""
+        return self.taps == "in-step" and self.can_tap_by_cycle
+
+    @property
+    def makes_taps_rigid(self) -> bool:
+        """Whether such a cycle has M29 before it."""
+        return self.taps_as_cycles and any(c.group == RIGID for c in self.target.m_codes.values())
+
+    @property
+    def can_tap_by_cycle(self) -> bool:
+        """Whether the target has G84 and G74 for G33.1, back to where they begin, and not that."""
+        rule = self.target.cycle_rule
+        only_there = IN_STEP in self.source.codes and IN_STEP not in self.target.codes
+        if rule is None or rule.taps_float or not only_there:
+            return False
+        steps = (rule.cycles[n].steps[1:2] if n in rule.cycles else () for n in TAPPING)
+        return all(each and each[0].level == Level.CLEARANCE for each in steps)
 
     def dropping(self, name: str) -> str:
         """Return the setting that leaves this out as well, to be pasted over the one that is."""

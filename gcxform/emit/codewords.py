@@ -39,6 +39,10 @@ IF_ALIKE: Final = (
     'taps = "alike" in [output] if the spindle turns in step with the feed on both controls, or '
     "a floating chuck makes up for it on both; else let the CAM write the tap for this control"
 )
+BY_CYCLE: Final = (
+    'taps = "in-step" in [output] if the spindle turns in step with the feed in G74 and G84 of {}; '
+    "else let the CAM write the tap for this control"
+)
 IF_IN_STEP: Final = (
     'taps = "in-step" in [output] if the spindle turns in step with the feed in G74 and G84 of {}, '
     "and they need no floating chuck; else let the CAM write the tap for this control"
@@ -146,6 +150,8 @@ class CodeWords:
     @property
     def _if_in_step(self) -> str:
         """How the user says that taps are in step with the spindle, where the target has a code."""
+        if self.saying.can_tap_by_cycle and self.meaning.groups.get("motion") == IN_STEP:
+            return BY_CYCLE.format(self.target.name)
         rule = self.source.cycle_rule
         if rule is not None and rule.taps_float and IN_STEP in self.source.codes:
             return f"{IN_STEP} is a tap in step with the spindle; {BY_TAP}"

@@ -33,7 +33,7 @@ from gcxform.emit.presets import Presets
 from gcxform.emit.render import interleave
 from gcxform.emit.set_zeros import refuse_other_zeros
 from gcxform.emit.tapping import Taps
-from gcxform.emit.taps_in_step import TapsInStep
+from gcxform.emit.taps_as_cycles import taps_of
 from gcxform.emit.writing import Style, Writing
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import defines
@@ -128,8 +128,9 @@ class _Job:
         self.emitter = emitter
         self.path = task.path
         self.positions = Positions(task, emitter.believed)
-        self.in_step = TapsInStep(task, emitter.believed.speed)
+        self.in_step = taps_of(task, emitter.believed.speed)
         self.taps = Taps(task, self.positions, emitter.believed, self.in_step.rows)
+        self.taps.words |= self.in_step.words(self.positions)
         self.exactness = Exactness(task, emitter.path_mode, emitter.called)
         self.pieces = pieces_of(task, self.taps, self.exactness.around, self.in_step)
         kind = motion_kinds(task, self.positions)
@@ -308,8 +309,10 @@ class _Job:
             said = f"in G74 and G84 the spindle turns on {manner.target.name} as it does on "
             self.emitter.assumed[said + manner.source.name] = None
         if self.in_step.rows.any():
-            said = f"G74 and G84 of {manner.source.name} tap in step with the spindle, as {IN_STEP}"
-            self.emitter.assumed[f"{said} of {manner.target.name}"] = None
+            sides = [manner.source.name, manner.target.name]
+            one, other = reversed(sides) if manner.saying.taps_as_cycles else sides
+            said = f"G74 and G84 of {one} tap in step with the spindle, as {IN_STEP} of {other}"
+            self.emitter.assumed[said] = None
 
     def _refuse_open_waits(self) -> None:
         """Refuse dwells of which a setting of the source says how long they are."""

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcxform.dialect.code_translation import LASTING, Saying
+from gcxform.dialect.code_translation import IN_STEP, LASTING, Saying
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.dialect.cycle_rule import TAPPING as TAPS
 from gcxform.dialect.dialect import Dialect
@@ -27,7 +27,7 @@ STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "distance": ("incremental", ("G90", "G91")),
     "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
     "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
-    "motion": ("motion", {0: "G0", 1: "G1", 2: "G2", 3: "G3", TAP: "G33.1"}),
+    "motion": ("motion", {0: "G0", 1: "G1", 2: "G2", 3: "G3", TAP: IN_STEP, 74: "G74", 84: "G84"}),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""
 TAPPING = ("G74", "G84")

@@ -111,7 +111,7 @@ class _Needs:
     @cached_property
     def _in_step(self) -> Flags:
         """Whether a piece (pieces,) is a tap that another code says."""
-        return np.asarray(~np.isnan(self.pieces.pitch))
+        return np.asarray(self.pieces.tap_code >= 0)
 
     def _stated_in(self, group: str) -> Flags:
         """Return, per piece, whether its line has a code of a group."""
@@ -174,6 +174,7 @@ class _Needs:
         alone = self.task.manner.target.block_rule.one_command
         changes = moves & ((before != after) | alone)
         code = np.where(moves & (explicit | changes), after, NOTHING)
+        code = np.where(pieces.tap_code > TAP, pieces.tap_code, code)
         thread = pieces.has_row & ((form == Form.THREAD) | (form == Form.SYNCHRONISED))
         repaired = silent | (changes & ~explicit)
         thread &= ~pieces.special & ~self._in_step
@@ -198,6 +199,8 @@ class _Needs:
         given = given[pieces.line] / np.where(timed, 1.0, unit_here)
         need = np.where(word & ~self._other_mode, given, np.nan)
         need = np.where(self._feeding, pieces.of_rows(path.feed, np.nan) / unit, need)
+        cycles = pieces.tap_code > TAP  # whose F stays in force
+        need = np.where(cycles, pieces.pace / unit_here, need)
         unknown = word & np.isnan(given)  # only the machine knows it
         lost = self._feed_lost(inch, feed_mode) | unknown
         sets = ~np.isnan(need) | lost
@@ -213,7 +216,8 @@ class _Needs:
         written = ~kept & ~np.isnan(need) & (word | changes)
         which = np.where(kept, Feed.KEEP, np.where(written, Feed.WRITE, Feed.NONE)).astype(np.int8)
         which[self._in_step] = Feed.PITCH
-        need = np.where(self._in_step, pieces.pitch / unit_here, need)
+        which[cycles] = Feed.WRITE
+        need = np.where(self._in_step, pieces.pace / unit_here, need)
         return Feeds(which, need, after, unit_after, written | (word & ~kept))
 
     def _reads_alike(self, slot: Ints) -> Flags:

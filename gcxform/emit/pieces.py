@@ -18,7 +18,7 @@ from gcxform.emit.manner import Task
 from gcxform.emit.own_blocks import over_holes, own_blocks
 from gcxform.emit.tapping import Taps
 from gcxform.emit.taps_in_step import TapsInStep
-from gcxform.modal.meaning.tables import NURBS, NURBS_END
+from gcxform.modal.meaning.tables import NURBS, NURBS_END, TAP
 from gcxform.modal.state import CYCLE_OFF
 from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import one_of
@@ -57,7 +57,7 @@ class Pieces:
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     converted (pieces,) whether such a block, to a place of the machine, is written in another unit
     homed     (pieces,) whether it goes to a point of the machine by other words than those it has
-    pitch     (pieces,) mm for each turn, of a tap in step that another code says; else nan
+    tap_code  (pieces,) the code of a tap that another code says, else -1; `pace`: its K or F
     tap       (pieces,) whether it is a canned cycle whose ends have moved; `apart`: one of several
               into which its repeats are taken apart
     """
@@ -76,7 +76,8 @@ class Pieces:
     special: Flags
     converted: Flags
     homed: Flags
-    pitch: Floats
+    pace: Floats
+    tap_code: Small
     tap: Flags
     apart: Flags
 
@@ -96,6 +97,8 @@ def pieces_of(task: Task, taps: Taps, around: Around, in_step: TapsInStep) -> Pi
     over = over_holes(task, expanded)
     before, behind = own_blocks(task, count, expanded)
     expanded |= _of_nurbs(task)
+    both = in_step.around()
+    before, behind = [*before, *both[0]], [*both[1], *behind]
     inner = _between_moves(task, expanded & ~in_step.lines)
     between = [*opens, *before, *over, *inner, *closes, *behind]
     moves = [given for given in path.given if given.moves]
@@ -120,7 +123,7 @@ def pieces_of(task: Task, taps: Taps, around: Around, in_step: TapsInStep) -> Pi
     role[event >= 0] = Role.EVENT
     places = _at_pieces(one_of(path.form, PLACES), False, row, has_row)
     other_unit = special & (path.blocks.inch != task.read.path.blocks.inch)
-    tap = (taps.lines & cycle)[line]
+    tap = (taps.lines & cycle)[line] | _at_pieces(in_step.code > TAP, False, row, has_row)
     return Pieces(
         count=count,
         expanded_line=expanded,
@@ -136,7 +139,8 @@ def pieces_of(task: Task, taps: Taps, around: Around, in_step: TapsInStep) -> Pi
         special=special[line],
         converted=places & other_unit[line],
         homed=_goes_home(task)[line] & has_row,
-        pitch=_at_pieces(in_step.pitch, np.nan, row, has_row),
+        pace=_at_pieces(in_step.pace, np.nan, row, has_row),
+        tap_code=_at_pieces(in_step.code, -1, row, has_row),
         tap=tap,
         apart=tap & (taps.count > 1)[line],
     )

@@ -19,9 +19,11 @@ from gcxform.dialect.codes import Effect
 from gcxform.dialect.cycle_rule import DWELL, TAPPING
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.manner import Task
+from gcxform.emit.positions import Positions
+from gcxform.modal.meaning.tables import TAP
 from gcxform.system.arrays import Flags, Floats
 from gcxform.system.distinct import one_of
-from gcxform.toolpath.path import Event, FeedMode, Form
+from gcxform.toolpath.path import Event, FeedMode, Form, Given
 
 TURNING = {84: 1, 74: 2}
 """How the spindle has to turn in each cycle, by the number of its mode: M3, M4."""
@@ -34,25 +36,43 @@ class TapsInStep:
 
     rows   (rows,) whether a move is the way in or the way out of such a tap
     out    (rows,) whether it is the way out, which the block of the way in makes as well
-    pitch  (rows,) mm for each turn
-    speed  turns per minute in force after the window; nan: not known
+    pace   (rows,) mm for each turn, the K of its block
+    code   (rows,) the number of the code that is written, -1 for other moves
+    speeds (rows,) of the spindle, turns per minute; `speed`: after the window; nan: not known
     """
 
     def __init__(self, task: Task, speed: float) -> None:
         self.task, path = task, task.path
         self.rows = np.zeros(len(path), np.bool_)
         self.out = np.zeros(len(path), np.bool_)
-        self.pitch = np.full(len(path), np.nan)
+        self.pace = np.full(len(path), np.nan)
+        self.code = np.full(len(path), -1, np.int8)
         self.speed = speed
+        self.speeds = np.full(len(path), np.nan)
+        self._find()
+
+    def _find(self) -> None:
+        """Find the taps. Raises InputError for those that cannot be said so."""
+        task, path = self.task, self.task.path
         if not task.manner.saying.taps_in_step:
             return
         cycle = task.read.modes.cycle[path.block]
         self.rows = (path.form == Form.SYNCHRONISED) & one_of(cycle, sorted(TAPPING))
         self.out = every_other(self.rows)
-        speeds = self._speeds()
+        self.code[self.rows] = TAP
+        self.speeds = self._speeds()
         for row in np.flatnonzero(self.rows & ~self.out).tolist():
-            self.pitch[row : row + 2] = self._pitch(row, float(speeds[row]))
+            self.pace[row : row + 2] = self._pitch(row, float(self.speeds[row]))
         self._refuse_waits()
+
+    def around(self) -> tuple[list[Given], list[Given]]:
+        """Return the blocks that stand before and behind taps."""
+        return [], []
+
+    def words(self, positions: Positions) -> dict[str, Floats]:
+        """Return the words of cycles by address (rows,), as whole numbers of the last decimal."""
+        del positions
+        return {}
 
     @property
     def lines(self) -> Flags:
@@ -94,9 +114,13 @@ class TapsInStep:
             self._refuse(line, message, f"write {turning} and S in a block before")
 
     def _check_back(self, row: int, line: int, code: int) -> None:
-        """Refuse a tap that comes back to another place than it begins at."""
+        """Refuse a tap that comes back to another place than it begins at, or is mirrored."""
         path, source = self.task.path, self.task.manner.source
         back = np.abs(path.end[row + 1] - path.start[row])
+        read = self.task.read.path
+        matrices = [read.frames[n].matrix for n in set(read.frame[read.block == line].tolist())]
+        if any(m is not None and np.linalg.det(np.array(m)) < 0 for m in matrices):
+            self._refuse(line, "a tap in a mirror image: its hand is not certain", BY_CAM)
         if not (back[:3] <= SAME).all():
             message = f"G{code} of {source.name} comes out to another level than it begins at"
             self._refuse(line, message, "write G99 in this block")

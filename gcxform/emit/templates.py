@@ -303,6 +303,8 @@ class TemplateWriter:
         if address in self.cycle_words.waiting:
             self.draft.fields += self.cycle_words.at(address, self.draft.gap_before(lead))
             return True
+        if self.key.motion >= 0:  # a tap that was none of a cycle
+            return address == "K"
         rule = self.source.cycle_rule
         return self.key.apart and rule is not None and address == rule.repeats
 

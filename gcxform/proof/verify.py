@@ -127,6 +127,7 @@ class Verifier:
             back = self.interpreter.interpret(again, self.reader.table)
         except GcxformError as error:
             raise not_taken(error, self.context, self.file, again, source) from None
+        back = self.taps.of_cycles(back)
         self.findings.file = self.whole.add(again, self.reader.table, back.live)
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())

@@ -22,12 +22,22 @@ def _in_step(name: str, old: str, new: str, case: str, file: str = EMITTED) -> M
     return Mutation(f"taps in step: {name}", file, old, new, tests)
 
 
+def _cycles(name: str, old: str, new: str, case: str = "for-haas") -> Mutation:
+    tests = f"tests/test_corpus.py::test_case[dialects/across/tap-in-step-{case}]"
+    return Mutation(f"taps as cycles: {name}", "gcxform/emit/taps_as_cycles.py", old, new, tests)
+
+
 def _proved(name: str, old: str, new: str) -> Mutation:
     tests = "tests/test_taps_in_step.py"
     return Mutation(f"taps in step: {name}", "gcxform/proof/taps_in_step.py", old, new, tests)
 
 
 MUTATIONS = (
+    _proved(
+        "any feed of a cycle is one",
+        "known & (np.abs(feed - wanted)",
+        "known | (np.abs(feed - wanted)",
+    ),
     _proved("any pitch is one", "off = timed | ~(", "off = timed & ~("),
     _proved("any hand is one", "other = back.modes.spindle[line] != sense", "other = sense < 0"),
     _proved("any tap may wait", "if event.within and event.what ==", "if False and event.what =="),
@@ -74,6 +84,22 @@ MUTATIONS = (
         "for-linuxcnc",
         "gcxform/emit/needed_modes.py",
     ),
+    _in_step(
+        "a mirror leaves the hand",
+        "np.linalg.det(np.array(m)) < 0",
+        "False",
+        "mirrored",
+    ),
+    _cycles("the feed is the pitch", "1.0 if per_turn else self.speeds[row]", "1.0", "for-fanuc"),
+    _cycles("G74 for M3", "{1: 84, 2: 74}", "{1: 74, 2: 84}", "for-haas"),
+    _cycles(
+        "R is the depth", "positions.before[row, normal]", "positions.held[row, normal]", "for-haas"
+    ),
+    _cycles(
+        "steps are levels", "if path.blocks.incremental[line]:", "if False:", "by-steps-for-fanuc"
+    ),
+    _cycles("no G80", "return opens if rigid else [], closes", "return opens if rigid else [], []"),
+    _cycles("no M29", "return opens if rigid else [], closes", "return [], closes", "for-fanuc"),
     _in_step(
         "G84 of LinuxCNC is in step",
         "return self.crosses and by_cycle and",
