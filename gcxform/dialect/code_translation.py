@@ -44,6 +44,7 @@ SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL}) | A
 HOME, MACHINE, FOLLOW = "home", "machine", "follow-tip"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
 NO_LENGTH = "no-length"
+STORE_HOME = "store-home"
 IN_STEP = "G33.1"
 RIGID = "tapping"
 """The group of M codes that make the next tap one in step with the spindle."""
@@ -59,7 +60,7 @@ LASTING, EXECUTED = "#", "()"
 
 def stores_home(dialect: type[Dialect]) -> bool:
     """Whether a program can choose the point to which G28 goes."""
-    return any(code.act == "store-home" for code in dialect.codes.values())
+    return any(code.act == STORE_HOME for code in dialect.codes.values())
 
 
 @dataclass(frozen=True)
