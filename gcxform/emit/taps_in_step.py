@@ -149,7 +149,7 @@ def every_other(rows: Flags) -> Flags:
 def speed_after(event: Event, speed: float, source: type[Dialect]) -> float:
     """Return the speed of the spindle (1/min) behind an event; nan where that is not known."""
     if event.what == "S":
-        return event.values[0][1]
+        return event.values[0][1] if event.values else np.nan
     if event.what == "G96":
         return np.nan
     if event.what[0] == "M" and event.what[1:].isdigit():

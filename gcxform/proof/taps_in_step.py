@@ -95,6 +95,8 @@ class TapProof:
         self, read: Interpreted, back: Interpreted, rows: Flags, trace: Trace
     ) -> Iterator[Wrong]:
         """Yield the taps that are other ones in the output."""
+        if not (self.says or self.by_cycles):
+            return
         speeds = self._speeds(back.path)
         if not rows.any():
             return
@@ -148,9 +150,9 @@ class TapProof:
     def _behind(self, event: Event) -> float:
         """Return the speed behind an event: that of S, until something else may have set it."""
         if event.what == "S":
-            return dict(event.values)["S"]
+            return dict(event.values).get("S", np.nan)  # only the machine knows it
         target = self.context.target
-        if event.what[0] == "M":
+        if event.what[0] == "M" and event.what[1:].isdigit():
             m_code = target.m_codes.get(int(event.what[1:]), target.block_rule.unknown_m)
             return self.speed if m_code and not m_code.loses_position else np.nan
         code = target.codes.get(event.what)
