@@ -84,6 +84,8 @@ class Cycle:
     open_words  words that leave its moves open when they are in force
     refused     why it is not expanded; with `steps`, that to the hole and out of it, it may stay
     xy_only     why it is not expanded outside G17
+    floats      it taps at the feed alone, for a floating chuck: what is in step with the spindle is
+                no cycle, but G33.1
     """
 
     steps: tuple[Step, ...] = ()
@@ -94,6 +96,7 @@ class Cycle:
     open_words: str = ""
     refused: str = ""
     xy_only: str = ""
+    floats: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,8 +137,6 @@ class CycleRule:
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98
-    taps_float      taps go at the feed alone, for a floating chuck: in step with the spindle is no
-                    cycle, but G33.1
     patterns        kept codes that drill the cycle in force at places of their own, as G70 of Haas:
                     no others may stand where a cycle is in force
     """
@@ -151,8 +152,12 @@ class CycleRule:
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True
-    taps_float: bool = False
     patterns: frozenset[str] = frozenset()
+
+    @property
+    def taps_float(self) -> bool:
+        """Whether taps go at the feed alone."""
+        return any(cycle.floats for cycle in self.cycles.values())
 
     def place_is_open(self, control: Mapping[str, str | float]) -> bool:
         """Tell whether a setting that is not given decides if a block without a place drills."""

@@ -84,12 +84,12 @@ BORE_DWELL = (v.feed(BOTTOM, v.DWELL), v.feed(RETRACT))
 TAP, TAP_LEFT = v.tap(v.FORWARD, v.REVERSE), v.tap(v.REVERSE, v.FORWARD)
 CYCLES = {
     73: v.Cycle(v.DRILL, pecks="break", needs="Q", takes="QL"),
-    74: v.Cycle(TAP_LEFT, takes="P", spindle=(-1,), xy_only=MIXED_UP),
+    74: v.Cycle(TAP_LEFT, takes="P", spindle=(-1,), xy_only=MIXED_UP, floats=True),
     76: v.Cycle(refused="it is a thread"),
     81: v.Cycle(v.DRILL, takes="L"),
     82: v.Cycle(v.DRILL_DWELL, needs="P", takes="PL"),
     83: v.Cycle(v.DRILL, pecks="clear", needs="Q", takes="QL"),
-    84: v.Cycle(TAP, takes="PL", spindle=(1,), xy_only=MIXED_UP),
+    84: v.Cycle(TAP, takes="PL", spindle=(1,), xy_only=MIXED_UP, floats=True),
     85: v.Cycle(BORE, takes="L"),
     86: v.Cycle(BORE_STOP, needs="P", takes="PL", spindle=(1, -1)),
     87: v.Cycle(BORE_BACK, needs="IJK", takes="IJKL", spindle=(1, -1)),
@@ -104,7 +104,6 @@ CYCLE_RULE = v.CycleRule(
     stays=v.Staying(dwell=True),
     one_plane=False,
     initial_level=False,
-    taps_float=True,
 )
 FILES = gx.LookupRule(names=("{name}",), endings=(".ngc",))
 USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
