@@ -50,7 +50,7 @@ MUTATIONS = (
         "followed: a tip that rests is not looked at",
         FORWARD,
         "wrong = moved > PACE",
-        "wrong = moved > 1e9 * PACE",
+        "wrong = -moved > PACE",
         f"{CORPUS}[volumetric/tip-followed-rests]",
     ),
     Mutation(
@@ -59,13 +59,6 @@ MUTATIONS = (
         "curved = ~np.isin(path.kind[rows], (gx.Kind.LINE, gx.Kind.RAPID))",
         "curved = np.zeros(len(rows), np.bool_)",
         f"{CORPUS}[volumetric/tip-followed-arc]",
-    ),
-    Mutation(
-        "followed: angles that are not known go through",
-        FOLLOWED,
-        "rows = np.flatnonzero(following & unknown)[:1]",
-        "rows = np.empty(0, np.int64)",
-        f"{CORPUS}[volumetric/tip-followed-angles-unknown]",
     ),
     Mutation(
         "followed: a start that nobody has named goes through",
