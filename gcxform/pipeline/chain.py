@@ -59,7 +59,8 @@ def keeps_tip_codes(steps: Sequence[object]) -> bool:
     """
     asked = [step.demands for step in steps if isinstance(step, Pass)]
     others = [each for each in asked if not each.keeps_tip_codes]
-    plain = all(replace(each, keeps_rows=True) == Demands() for each in others)
+    bare = [replace(each, keeps_rows=True, promise_angle=0.0) for each in others]
+    plain = all(each == Demands() for each in bare)
     moved = {TIP_POSITIONS, AXIS_POSITIONS}
     turned = any(moved & (s.ensures | s.clears) for s in steps if isinstance(s, Pass))
     return len(others) < len(asked) and plain and not turned
