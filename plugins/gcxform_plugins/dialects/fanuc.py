@@ -53,6 +53,7 @@
 | some of its I J K left out | they are 0; all left out: the tool keeps its direction |
 | G68.2 to G68.4, G53.1, G43.4 | stay, positions lost, where no pass asks where that is |
 | G68.2 X Y Z I J K, then G53.1 | turns a table onto a plane: `gcxform/modal/frames/planes.py` |
+| G43.4 in `volumetric` | axes may turn with `tips = "turning"`, on tables alone |
 | G43.4 while no axis turns | words of a tip on a table: `gcxform/modal/frames/followed_tips.py` |
 | G31 | ends at its target at the latest; the axes named then stand nowhere known |
 | G36, G37 | measure a tool and write its offset: refused |

@@ -75,6 +75,7 @@ of 8055 and 8065; [K] not looked up. What no source says is refused.
 | other M codes | of the machine: refused, but for `inert-m`; for a Fagor the line stays |
 | T, M6, D beside a move | M6 and D: refused |
 | `#RTCP ON`, `#RTCP OFF` | the control follows the tip, or not; other forms are refused |
+| those, in `volumetric` | stay, and tips are corrected |
 | `#KIN ID[1]` | chooses what is in the machine file; while following, or a second one: refused |
 | `#TLC ON [2]` | a tool that is 2 longer than the program was made for [isg]: refused |
 | `#CS`, `#ACS`, `#CSROT`, `#TOOL ORI`, `#SELECT ORI` | inclined planes: refused, but for OFF |

@@ -45,6 +45,7 @@ Where a page of a manual is named, that is where it is said; [K] is known from p
 | M91, TOOL CALL | are refused under M128, as the manual asks | 620, p. 340 |
 | F TCP, AXIS POS | feed of the tip, angles of axes: as M128; F CONT, SPAT refused | 640, p. 400 |
 | M128, M129, TCPM, to the same control | stay, and so does all behind AXIS SPAT or VECTOR | |
+| tips behind them, in `volumetric` | are those of a machine with errors: `followed.py` there | |
 | PATHCTRL AXIS | tip on a line, axes in proportion; VECTOR is refused | iTNC 530, p. 516 |
 | TOOL CALL | tool, length, S, F; without number S and F only | [K] |
 | TOOL CALL "NAME" | the tool that the machine file calls so; to a TNC any goes along | |

@@ -61,6 +61,7 @@ kept as it stands, with all that is lost behind it.
 | `T="NAME"` | the tool that the machine file calls so; to the same control any goes along | |
 | G41, G42 | the radius of the tool of D1; settings decide how contours are met | W1 13 |
 | `TRAORI`, `TRAORI(1)`, `TRAFOOF` | X Y Z are those of the tip; the work offset stays | TR 172 |
+| those, in `volumetric` | stay, and tips are corrected: `passes/volumetric/followed.py` | |
 | other transformations, other arguments | refused | |
 | cuts that turn axes then | angles in proportion, or the tool axis on a great circle | PM 674 |
 | ORIAXES | in proportion, but with ORIWKS behind which MD21104 decides | PM 674, 1262 |
