@@ -277,6 +277,7 @@ class _Machine:
         """Return the arc; its centre has the normal coordinate of the start (nan if unknown)."""
         _, axes, letters = PLANES[self.modal["plane"] or 170]
         steps = self.modal["distance"] == 910  # an arc by distances may begin nowhere known
+        steps &= "R" in values or self.modal["arc"] != 901  # but not about a place
         known = steps or {axes[0], axes[1]} <= set(start)
         if not known or set(end) - set(start):
             raise self._refused("arc from an unknown position")
