@@ -8,7 +8,8 @@ know besides (`round_trips.toml`). What counts is a program without macros that 
 `absolute` in its own dialect, and is no file of a subprogram. *Round* is one that is proved on both
 ways, and whose three programs `compare` the same within what rounding does; codes that both
 certificates list as said otherwise are not compared, nor places that the control of the source
-alone knows, as behind the G49 that ends a tip, and the programs made of it say.
+alone knows, as behind the G49 that ends a tip, and the programs made of it say. Taps of which a
+user knows that they are in step with the spindle are compared by pitch, whichever code says them.
 Both ways take what hints offer: a pass, a code to be left out, and that a tool change moves no axis
 (`--bare` takes nothing).
 """
@@ -27,6 +28,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from msgspec import structs
 from translation import WAYS, offered, taken
 from translation import said as step_name
@@ -41,7 +43,7 @@ from gcxform.pipeline.pipeline import Pipeline, Result
 from gcxform.pipeline.translated_moves import CHORD_ERROR
 from gcxform.pipeline.translated_moves import SAID as SPLINES
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.path import Event, Toolpath
+from gcxform.toolpath.path import Event, FeedMode, Form, Toolpath
 
 TARGETS = ("heidenhain", "siemens", "fagor")
 SOURCES = ("linuxcnc", "fanuc")
@@ -64,6 +66,8 @@ CENTRED = "cutter-comp"
 OUTPUT = ("drop", "inert")
 """What a user gives of the output where a hint offers it."""
 ONCE_KNOWN = "only B says"
+TAPS_SAID = "taps in step"
+"""What is told where certificates say that G84 is one."""
 TOLERANCE = 0.002  # mm: twice what a program is rounded by
 
 
@@ -172,7 +176,7 @@ def _told(made: Pipeline, user: Mapping[str, Any]) -> Pipeline:
     if machine is not None:
         inert = machine.inert_m | set(user.get("inert-m", ()))
         machine = structs.replace(machine, inert_m=inert)
-    return replace(made, reading=reading, machine=machine)
+    return replace(made, reading=reading, machine=machine, taps=user.get("taps", made.taps))
 
 
 def _bare(reading: Reading, control: Mapping[str, str | float]) -> Reading:
@@ -192,7 +196,9 @@ def _bare(reading: Reading, control: Mapping[str, str | float]) -> Reading:
 def told(*results: Result) -> set[str]:
     """Return the names of codes that certificates list as said otherwise."""
     said = (SAID.match(line) for result in results for line in result.certificate.assumed)
-    return {name for found in said if found for name in found.groups() if name}
+    names = {name for found in said if found for name in found.groups() if name}
+    taps = any("tap in step" in line for result in results for line in result.certificate.assumed)
+    return names | ({TAPS_SAID} if taps else set())
 
 
 def apart(one: gx.Program, other: gx.Program, but: set[str], near: float) -> str:
@@ -209,7 +215,8 @@ def apart(one: gx.Program, other: gx.Program, but: set[str], near: float) -> str
 
 
 def _without(path: Toolpath, but: set[str]) -> Toolpath:
-    """Return a path without events that are said otherwise."""
+    """Return a path without events that are said otherwise; taps by feed are those by pitch."""
+    path = _by_pitch(path) if TAPS_SAID in but else path
     again = _again(path)
     events = [
         e
@@ -221,6 +228,28 @@ def _without(path: Toolpath, but: set[str]) -> Toolpath:
     if "(...)" in but:
         events = [e for e in events if not e.what.startswith("(")]
     return replace(path, events=tuple(events))
+
+
+def _by_pitch(path: Toolpath) -> Toolpath:
+    """Return a path whose taps in step are fed per turn, F by S, and hold nothing but moves."""
+    tied, feed = path.form == Form.SYNCHRONISED, path.feed.copy()
+    speeds = [(event.row, event.values[0][1]) for event in path.events if event.what == "S"]
+    for row in np.flatnonzero(tied & (path.feed_mode == FeedMode.PER_MINUTE)).tolist():
+        feed[row] /= [value for at, value in speeds if at <= row][-1]
+    around = (path.form == Form.CYCLE) & np.isin(path.block, path.block[tied])
+    lines = {*path.source[tied].tolist()}
+    held, events = 0.0, list[Event]()
+    for event in path.events:
+        same = event.what == "S" and event.values[0][1] == held
+        held = event.values[0][1] if event.what == "S" else held
+        inner = event.within and event.line in lines
+        events += [event] * (not (inner or same or event.what == "M29"))
+    return path.replace(
+        feed=feed,
+        feed_mode=np.where(tied, FeedMode.PER_TURN, path.feed_mode).astype(path.feed_mode.dtype),
+        form=np.where(around, Form.PLAIN, path.form).astype(path.form.dtype),
+        events=tuple(events),
+    )
 
 
 def _again(path: Toolpath) -> list[Event]:

@@ -172,6 +172,12 @@ def test_what_has_no_words_is_refused(blocks, why):
         said(blocks)
 
 
+def test_the_length_of_the_tool_in_the_spindle_has_a_number():
+    with pytest.raises(gx.InputError) as error:
+        said("T3 M6\nG43 H4\nG0 X1. Y1. Z1.")
+    assert "write H3" in error.value.diagnostics[0].hint
+
+
 def test_behind_a_tool_change_without_a_length_a_setting_decides():
     text = "G21 G17 G90 G94\nT1 M6\nG0 X1. Y1. Z1.\nM2\n"
     with pytest.raises(gx.InputError, match="MD20270"):

@@ -20,6 +20,7 @@ What is left out of events is what the proof does not look for, so a rule here i
 | a tool length by its value (G43.1) | nothing, where `offsets` takes it into the words |
 | a tip that is followed (G43.4) | the length (G43), where `offsets` takes the rest into words |
 | a tool length by its number (G43 H) | the length itself (G43.1 Z), where that is known |
+| M29, where taps are said in step with the spindle | nothing: G33.1 is nothing else |
 | a comment that shows or logs something | a comment |
 """
 
@@ -29,7 +30,8 @@ from collections.abc import Mapping
 from dataclasses import field
 
 from gcxform import diagnostics
-from gcxform.dialect.codes import Effect
+from gcxform.dialect.codes import Code, Effect
+from gcxform.dialect.cycle_rule import TAPPING, Level
 from gcxform.dialect.dialect import Dialect
 from gcxform.values import dataclass
 
@@ -42,6 +44,10 @@ SPOKEN = frozenset({EXACT_STOP, EXACT_PATH, BLEND, LOOK_AHEAD, RPM, CANCEL}) | A
 HOME, MACHINE, FOLLOW = "home", "machine", "follow-tip"
 NUMBERED, VECTOR = frozenset({"length", "length-negative"}), "length-vector"
 NO_LENGTH = "no-length"
+STORE_HOME = "store-home"
+IN_STEP = "G33.1"
+RIGID = "tapping"
+"""The group of M codes that make the next tap one in step with the spindle."""
 ABORT = "ABORT"
 """A comment that ends the program: it stays."""
 STRONGER: Mapping[str, str] = {EXACT_PATH: EXACT_STOP}
@@ -54,7 +60,7 @@ LASTING, EXECUTED = "#", "()"
 
 def stores_home(dialect: type[Dialect]) -> bool:
     """Whether a program can choose the point to which G28 goes."""
-    return any(code.act == "store-home" for code in dialect.codes.values())
+    return any(code.act == STORE_HOME for code in dialect.codes.values())
 
 
 @dataclass(frozen=True)
@@ -62,8 +68,9 @@ class Saying:
     """From one control to another; `m_codes` and `drop` are what the user says of codes.
 
     `tips` are codes that follow a tip, where another control gets words of the axes instead, each
-    with the one that is left of it: it only takes the length of the tool. `taps_alike`: the user
-    says that both tie the spindle to the feed in the same way.
+    with the one that is left of it: it only takes the length of the tool. `taps`: what the user
+    says of G74 and G84: "alike", both tie the spindle to the feed in the same way; "in-step", they
+    tap in step with it.
     """
 
     source: type[Dialect]
@@ -71,13 +78,45 @@ class Saying:
     m_codes: Mapping[str, str] = field(default_factory=dict)
     drop: frozenset[str] = frozenset()
     tips: Mapping[str, str] = field(default_factory=dict)
-    taps_alike: bool = False
+    taps: str = ""
     _known: dict[str, str] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def crosses(self) -> bool:
         """Whether the program changes its control."""
         return self.source is not self.target
+
+    @property
+    def taps_in_step(self) -> bool:
+        """Whether taps are in step with the spindle, and the target says so by G33.1."""
+        return self.taps == "in-step" and self.can_tap_in_step
+
+    @property
+    def can_tap_in_step(self) -> bool:
+        """Whether the target has G33.1 for taps in step that the source says by a cycle."""
+        rule = self.source.cycle_rule
+        by_cycle = rule is not None and not rule.taps_float
+        return self.crosses and by_cycle and self.target.codes.get(IN_STEP) == Code("motion")
+
+    @property
+    def taps_as_cycles(self) -> bool:
+        """Whether G33.1 of the source is a cycle of the target, which the user says is in step."""
+        return self.taps == "in-step" and self.can_tap_by_cycle
+
+    @property
+    def makes_taps_rigid(self) -> bool:
+        """Whether such a cycle has M29 before it."""
+        return self.taps_as_cycles and any(c.group == RIGID for c in self.target.m_codes.values())
+
+    @property
+    def can_tap_by_cycle(self) -> bool:
+        """Whether the target has G84 and G74 for G33.1, back to where they begin, and not that."""
+        rule = self.target.cycle_rule
+        only_there = IN_STEP in self.source.codes and IN_STEP not in self.target.codes
+        if rule is None or rule.taps_float or not only_there:
+            return False
+        steps = (rule.cycles[n].steps[1:2] if n in rule.cycles else () for n in TAPPING)
+        return all(each and each[0].level == Level.CLEARANCE for each in steps)
 
     def dropping(self, name: str) -> str:
         """Return the setting that leaves this out as well, to be pasted over the one that is."""
@@ -156,6 +195,8 @@ class Saying:
             return self.m_codes[what]
         if not self.crosses:
             return what
+        if self.taps_in_step and self._makes_rigid(what):
+            return ""
         what = self.tips.get(what, what)
         if what.startswith(("(", ";")):
             tells = self.source.text_rule.tells(what)
@@ -169,6 +210,12 @@ class Saying:
         if code is None or not code.act or code.effect not in (Effect.INERT, Effect.FRAME):
             return what
         return self._spelled(what, code.act)
+
+    def _makes_rigid(self, what: str) -> bool:
+        """Whether a code says that the next tap is in step with the spindle, and nothing else."""
+        number = what[1:] if what[0] == "M" and what[1:].isdigit() else "-1"
+        code = self.source.m_codes.get(int(number))
+        return code is not None and code.group == RIGID
 
     @property
     def length_said(self) -> str:

@@ -134,6 +134,8 @@ class CycleRule:
     one_plane       the plane may not change while a cycle is in force
     repeats         the word that counts the repeats
     initial_level   whether a program starts in G98
+    taps_float      taps go at the feed alone, for a floating chuck: in step with the spindle is no
+                    cycle, but G33.1
     patterns        kept codes that drill the cycle in force at places of their own, as G70 of Haas:
                     no others may stand where a cycle is in force
     """
@@ -149,6 +151,7 @@ class CycleRule:
     one_plane: bool = True
     repeats: str = "L"
     initial_level: bool = True
+    taps_float: bool = False
     patterns: frozenset[str] = frozenset()
 
     def place_is_open(self, control: Mapping[str, str | float]) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import Final, NoReturn
 
 from gcxform.catalogue.remedies import put_before
-from gcxform.dialect.code_translation import FOLLOW, HOME, MACHINE
+from gcxform.dialect.code_translation import FOLLOW, HOME, IN_STEP, MACHINE, RIGID, STORE_HOME
 from gcxform.dialect.codes import Code, Effect, MCode
 from gcxform.emit.draft import Draft
 from gcxform.emit.expressible import STATED, TAPPING, code_of, like, other_in, same_m, same_tap
@@ -39,8 +39,18 @@ IF_ALIKE: Final = (
     'taps = "alike" in [output] if the spindle turns in step with the feed on both controls, or '
     "a floating chuck makes up for it on both; else let the CAM write the tap for this control"
 )
+BY_PLACE: Final = (
+    "no program can choose there where G28 goes: write G53 with the place where G28 goes to it"
+)
+BY_CYCLE: Final = (
+    'taps = "in-step" in [output] if the spindle turns in step with the feed in G74 and G84 of {}; '
+    "else let the CAM write the tap for this control"
+)
+IF_IN_STEP: Final = (
+    'taps = "in-step" in [output] if the spindle turns in step with the feed in G74 and G84 of {}, '
+    "and they need no floating chuck; else let the CAM write the tap for this control"
+)
 SPLINES: Final = frozenset({"G5", "G5.1", "G5.2", "G5.3"})
-IN_STEP: Final = "G33.1"
 EXPANDED: Final = frozenset(f"G{number}" for number in CYCLES) - frozenset(TAPPING)
 """Cycles whose moves can be written one by one."""
 
@@ -105,7 +115,7 @@ class CodeWords:
         if said != name:
             text = like(text, said)
         elif self.source is not self.target and code and not self.saying.agrees(name):
-            alike = self.saying.taps_alike
+            alike = self.saying.taps == "alike"
             what = other_in(self.source, self.target, name, code, self.meaning, asked, alike)
             if what:
                 self._refuse(word, name, what)
@@ -133,12 +143,25 @@ class CodeWords:
         cycle = None if rule is None else rule.cycles.get(int(float(name[1:])))
         if name in TAPPING or name == IN_STEP:
             same = name in TAPPING and same_tap(self.source, self.target, name, self.meaning)
-            self.draft.refuse(word, what, IF_ALIKE if same else BY_TAP)
-        if name not in EXPANDED or cycle is None or cycle.refused:
-            self.draft.refuse(word, what)
+            self.draft.refuse(word, what, IF_ALIKE if same else self._how_to_tap(name))
+        if cycle is not None and cycle.refused:
+            self.draft.refuse(word, what, f"{cycle.refused}: let the CAM write it for this control")
+        if name not in EXPANDED or cycle is None:
+            stores = code is not None and code.act == STORE_HOME
+            self.draft.refuse(word, what, BY_PLACE if stores else "")
         if name in self.target.codes:
             what += f" as {self.source.name} means it"
         self.draft.refuse(word, what, put_before("cycles"))
+
+    def _how_to_tap(self, name: str) -> str:
+        """Return how the user says that taps are in step with the spindle, if that leads out."""
+        if self.saying.can_tap_by_cycle and self.meaning.groups.get("motion") == IN_STEP:
+            return BY_CYCLE.format(self.target.name)
+        rule = self.source.cycle_rule
+        both = IN_STEP in self.source.codes and IN_STEP in self.target.codes
+        if rule is not None and rule.taps_float and both:
+            return f"{IN_STEP} is a tap in step with the spindle; {BY_TAP}"
+        return IF_IN_STEP.format(self.source.name) if self.saying.can_tap_in_step else BY_TAP
 
     def _states(self, word: Word, name: str, group: str, lead: bytes) -> bool:
         """Write the code that has to be stated for a group; return whether this settles it."""
@@ -207,6 +230,8 @@ class CodeWords:
             return ""
         if code.group == "tool" and code.act != SET_TOOL:
             return f"{self.saying.m_coding(name, 'M0')}, where the operator changes it"
+        if code.group == RIGID and self.saying.can_tap_in_step:
+            return self._how_to_tap(name)
         left_out = f"{self.saying.dropping(name)} leaves it out"
         unknown = code is self.source.block_rule.unknown_m
         return f"{left_out}{UNKNOWN_M}" if unknown else left_out

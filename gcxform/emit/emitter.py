@@ -16,7 +16,7 @@ import numpy as np
 
 from gcxform.catalogue.remedies import put_before
 from gcxform.diagnostics import InputError
-from gcxform.dialect.code_translation import HOME
+from gcxform.dialect.code_translation import HOME, IN_STEP
 from gcxform.dialect.cycle_rule import TAPPING
 from gcxform.emit.bored_places import led_behind
 from gcxform.emit.centres import Centres
@@ -33,6 +33,7 @@ from gcxform.emit.presets import Presets
 from gcxform.emit.render import interleave
 from gcxform.emit.set_zeros import refuse_other_zeros
 from gcxform.emit.tapping import Taps
+from gcxform.emit.taps_as_cycles import taps_of
 from gcxform.emit.writing import Style, Writing
 from gcxform.modal.interpreter import Interpreted
 from gcxform.modal.inventory import defines
@@ -127,9 +128,11 @@ class _Job:
         self.emitter = emitter
         self.path = task.path
         self.positions = Positions(task, emitter.believed)
-        self.taps = Taps(task, self.positions, emitter.believed)
+        self.in_step = taps_of(task, emitter.believed.speed)
+        self.taps = Taps(task, self.positions, emitter.believed, self.in_step.rows)
+        self.taps.words |= self.in_step.words(self.positions)
         self.exactness = Exactness(task, emitter.path_mode, emitter.called)
-        self.pieces = pieces_of(task, self.taps, self.exactness.around)
+        self.pieces = pieces_of(task, self.taps, self.exactness.around, self.in_step)
         kind = motion_kinds(task, self.positions)
         self.stated = stated_by(task, self.pieces, kind, emitter.believed)
         self.copying = Copying(
@@ -281,6 +284,8 @@ class _Job:
             return
         waits = task.table.slots[task.shape, ord("P") - 65]
         cycles = self.path.block[self.path.form == Form.CYCLE]
+        if task.manner.saying.taps != "alike":  # a tap is refused by its own name
+            cycles = cycles[~one_of(task.read.modes.cycle[cycles], sorted(TAPPING))]
         for line in distinct(cycles[waits[cycles] >= 0]).tolist():
             number = int(task.window.first_number[line] + waits[line])
             pointed = bool(task.window.decimals[number] >= 0)
@@ -300,9 +305,14 @@ class _Job:
         manner = self.task.manner
         tied = self.path.block[self.path.form == Form.SYNCHRONISED]
         cycles = one_of(self.task.read.modes.cycle[tied], sorted(TAPPING))
-        if manner.crossing and manner.saying.taps_alike and cycles.any():
+        if manner.crossing and manner.saying.taps == "alike" and cycles.any():
             said = f"in G74 and G84 the spindle turns on {manner.target.name} as it does on "
             self.emitter.assumed[said + manner.source.name] = None
+        if self.in_step.rows.any():
+            sides = [manner.source.name, manner.target.name]
+            one, other = reversed(sides) if manner.saying.taps_as_cycles else sides
+            said = f"G74 and G84 of {one} tap in step with the spindle, as {IN_STEP} of {other}"
+            self.emitter.assumed[said] = None
 
     def _refuse_open_waits(self) -> None:
         """Refuse dwells of which a setting of the source says how long they are."""
@@ -366,6 +376,7 @@ class _Job:
             believed.said = np.array(self.copying.said_exactly()[-1])
             believed.stands = self.presets.standing(len(self.path) - 1)
         believed.led = led_behind(self.task, believed)
+        believed.speed = self.in_step.speed
         if len(self.pieces.line):
             believed.motion = int(stated.motion.after[-1])
             believed.feed = float(stated.feed.after[-1])

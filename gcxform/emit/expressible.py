@@ -8,14 +8,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from gcxform.dialect.code_translation import LASTING, Saying
+from gcxform.dialect.code_translation import IN_STEP, LASTING, Saying
 from gcxform.dialect.codes import Code, Effect, MCode
+from gcxform.dialect.cycle_rule import TAPPING as TAPS
 from gcxform.dialect.dialect import Dialect
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import SWITCHES
 from gcxform.modal.expressions.value import key_set, sets_number, written
 from gcxform.modal.meaning.meaning import FRAMING, Meaning
 from gcxform.modal.meaning.sorting import only_for_cycles
+from gcxform.modal.meaning.tables import TAP
 from gcxform.syntax.shapes import Shape
 from gcxform.syntax.tree import BLANKS, CODES, Item, Mark, Number, Statement, Word
 from gcxform.toolpath.path import Event
@@ -25,7 +27,7 @@ STATED: Mapping[str, tuple[str, Mapping[int, str] | tuple[str, ...]]] = {
     "distance": ("incremental", ("G90", "G91")),
     "arc-distance": ("absolute_centre", ("G91.1", "G90.1")),
     "feed-mode": ("feed_mode", {93: "G93", 94: "G94", 95: "G95"}),
-    "motion": ("motion", ("G0", "G1", "G2", "G3")),
+    "motion": ("motion", {0: "G0", 1: "G1", 2: "G2", 3: "G3", TAP: IN_STEP, 74: "G74", 84: "G84"}),
 }
 """Groups whose code may have to be stated: field of the key, and codes by value."""
 TAPPING = ("G74", "G84")
@@ -283,11 +285,13 @@ def _words_of(meaning: Meaning) -> set[str]:
     return {*meaning.slots, *(address for event in meaning.events for address, _ in event.slots)}
 
 
-def foreign_cycles(source: type[Dialect], target: type[Dialect]) -> frozenset[int]:
+def foreign_cycles(
+    source: type[Dialect], target: type[Dialect], in_step: bool = False
+) -> frozenset[int]:
     """Return the canned cycles of a control, by number, that another has not, or as others.
 
     Of those that wait the same number may be another time; where that hangs on a point in it,
-    who writes refuses the number.
+    who writes refuses the number. `in_step`: taps are said by another code.
     """
     rule = source.cycle_rule
     if rule is None or source is target:
@@ -298,6 +302,7 @@ def foreign_cycles(source: type[Dialect], target: type[Dialect]) -> frozenset[in
         for number, cycle in rule.cycles.items()
         if source.codes.get(f"G{number}") != target.codes.get(f"G{number}")
         or ("P" in cycle.needs and not waits)
+        or (in_step and number in TAPS)
     )
 
 

@@ -27,11 +27,12 @@ class Role(IntEnum):
 
 
 class Feed(IntEnum):
-    """What happens to the feed word of a piece."""
+    """What happens to the feed word of a piece; PITCH: K is written instead, the way for a turn."""
 
     NONE = 0
     KEEP = 1
     WRITE = 2
+    PITCH = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,9 +160,15 @@ class Centre:
 
 @dataclass(frozen=True, slots=True)
 class FeedWord:
-    """The feed, formatted."""
+    """The feed, formatted; or K, the way for each turn of the spindle."""
 
     gap: bytes
+    which: Feed = Feed.WRITE
+
+    @property
+    def address(self) -> str:
+        """The letter of the word."""
+        return "K" if self.which is Feed.PITCH else "F"
 
 
 Number = Copied | Computed | Converted | Preset | Wait

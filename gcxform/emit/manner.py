@@ -103,6 +103,7 @@ class Believed:
     it has no moves. `tapping`: its taps have moved, so that each needs words of its own.
     `aside`: how far (mm) it stands from where it shall be, after a tap. `stands`: its position, to
     the last bit in those axes of `said`. `led`: a move has led there that passes have corrected.
+    `speed`: of the spindle, in turns per minute.
     """
 
     position: Floats
@@ -120,6 +121,7 @@ class Believed:
     aside: float = 0.0
     stands: Floats = field(default_factory=lambda: np.zeros(0))
     led: bool = False
+    speed: float = np.nan
 
     @classmethod
     def at_start(cls, manner: Manner, position: Floats) -> Believed:

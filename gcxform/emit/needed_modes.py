@@ -105,7 +105,13 @@ class _Needs:
     def _feeding(self) -> Flags:
         """Whether a piece (pieces,) moves at the feed of the feed mode."""
         paced = one_of(self.task.read.modes.motion, (THREAD, TAP))
-        return self.pieces.of_rows(self.kind != Kind.RAPID, False) & ~paced[self.pieces.line]
+        cuts = self.pieces.of_rows(self.kind != Kind.RAPID, False) & ~self._in_step
+        return cuts & ~paced[self.pieces.line]
+
+    @cached_property
+    def _in_step(self) -> Flags:
+        """Whether a piece (pieces,) is a tap that another code says."""
+        return np.asarray(self.pieces.tap_code >= 0)
 
     def _stated_in(self, group: str) -> Flags:
         """Return, per piece, whether its line has a code of a group."""
@@ -160,15 +166,19 @@ class _Needs:
         form = pieces.of_rows(self.task.path.form, Form.PLAIN)
         moves = pieces.has_row & one_of(form, (Form.PLAIN, Form.MACHINE, Form.BLIND))
         sets[moves] = pieces.of_rows(self.kind, NOTHING)[moves]
+        sets[self._in_step] = TAP
+        moves |= self._in_step
         after = fill(sets, sets >= 0, self.believed.motion)
         before = self._held(sets, "motion", self.believed.motion)
         explicit = self._stated_in("motion")
         alone = self.task.manner.target.block_rule.one_command
         changes = moves & ((before != after) | alone)
         code = np.where(moves & (explicit | changes), after, NOTHING)
+        code = np.where(pieces.tap_code > TAP, pieces.tap_code, code)
         thread = pieces.has_row & ((form == Form.THREAD) | (form == Form.SYNCHRONISED))
         repaired = silent | (changes & ~explicit)
-        return Motions(code, after, silent, thread & ~pieces.special, repaired)
+        thread &= ~pieces.special & ~self._in_step
+        return Motions(code, after, silent, thread, repaired)
 
     def feed(self, inch: Small, feed_mode: Small) -> Feeds:
         """State a feed where the source stated one, where it changes, and always in G93.
@@ -189,6 +199,8 @@ class _Needs:
         given = given[pieces.line] / np.where(timed, 1.0, unit_here)
         need = np.where(word & ~self._other_mode, given, np.nan)
         need = np.where(self._feeding, pieces.of_rows(path.feed, np.nan) / unit, need)
+        cycles = pieces.tap_code > TAP  # whose F stays in force
+        need = np.where(cycles, pieces.pace / unit_here, need)
         unknown = word & np.isnan(given)  # only the machine knows it
         lost = self._feed_lost(inch, feed_mode) | unknown
         sets = ~np.isnan(need) | lost
@@ -203,6 +215,9 @@ class _Needs:
         kept |= unknown
         written = ~kept & ~np.isnan(need) & (word | changes)
         which = np.where(kept, Feed.KEEP, np.where(written, Feed.WRITE, Feed.NONE)).astype(np.int8)
+        which[self._in_step] = Feed.PITCH
+        which[cycles] = Feed.WRITE
+        need = np.where(self._in_step, pieces.pace / unit_here, need)
         return Feeds(which, need, after, unit_after, written | (word & ~kept))
 
     def _reads_alike(self, slot: Ints) -> Flags:

@@ -17,9 +17,10 @@ from gcxform.emit.fields import Role
 from gcxform.emit.manner import Task
 from gcxform.emit.own_blocks import over_holes, own_blocks
 from gcxform.emit.tapping import Taps
-from gcxform.modal.meaning.tables import NURBS, NURBS_END
+from gcxform.emit.taps_in_step import TapsInStep
+from gcxform.modal.meaning.tables import NURBS, NURBS_END, TAP
 from gcxform.modal.state import CYCLE_OFF
-from gcxform.system.arrays import Flags, Ints, Small
+from gcxform.system.arrays import Flags, Floats, Ints, Small
 from gcxform.system.distinct import one_of
 from gcxform.toolpath.path import Event, Form, Given
 from gcxform.values import dataclass
@@ -56,6 +57,7 @@ class Pieces:
     special   (pieces,) whether it stands for all moves of a block that is written as it stands
     converted (pieces,) whether such a block, to a place of the machine, is written in another unit
     homed     (pieces,) whether it goes to a point of the machine by other words than those it has
+    tap_code  (pieces,) the code of a tap that another code says, else -1; `pace`: its K or F
     tap       (pieces,) whether it is a canned cycle whose ends have moved; `apart`: one of several
               into which its repeats are taken apart
     """
@@ -74,6 +76,8 @@ class Pieces:
     special: Flags
     converted: Flags
     homed: Flags
+    pace: Floats
+    tap_code: Small
     tap: Flags
     apart: Flags
 
@@ -82,22 +86,28 @@ class Pieces:
         return _at_pieces(values, absent, self.row, self.has_row)
 
 
-def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
+def pieces_of(task: Task, taps: Taps, around: Around, in_step: TapsInStep) -> Pieces:
     """Return the pieces of a window."""
     path, cycle = task.path, task.read.modes.cycle != CYCLE_OFF
     count = np.bincount(path.block, minlength=task.read.live)
     corner = standing_corners(task)
-    special = _special(task, taps) | _stored(task, cycle & (count == 0)) | corner
+    special = _special(task, taps, in_step.rows) | _stored(task, cycle & (count == 0)) | corner
     expanded = cycle & ~special & ~taps.lines & ~_stores_taps(task, count) & _in_moves(task)
     opens, closes = around(expanded)
     over = over_holes(task, expanded)
     before, behind = own_blocks(task, count, expanded)
     expanded |= _of_nurbs(task)
-    between = [*opens, *before, *over, *_between_moves(task, expanded), *closes, *behind]
+    both = in_step.around()
+    before, behind = [*before, *both[0]], [*both[1], *behind]
+    inner = _between_moves(task, expanded & ~in_step.lines)
+    between = [*opens, *before, *over, *inner, *closes, *behind]
     moves = [given for given in path.given if given.moves]
     events = {_said(each): each for each in reversed([*between, *moves])}
     number = {said: n for n, said in enumerate(events)}
     line, row, event = _in_order(task, taps, special, between, number)
+    if in_step.out.any():
+        stays = ~_at_pieces(in_step.out, False, row, (count[line] > 0) & (event < 0))
+        line, row, event = line[stays], row[stays], event[stays]
     has_row = (count[line] > 0) & (event < 0)
     for given in moves:
         event[has_row & (row == given.row)] = number[_said(given)]
@@ -113,7 +123,7 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
     role[event >= 0] = Role.EVENT
     places = _at_pieces(one_of(path.form, PLACES), False, row, has_row)
     other_unit = special & (path.blocks.inch != task.read.path.blocks.inch)
-    tap = (taps.lines & cycle)[line]
+    tap = (taps.lines & cycle)[line] | _at_pieces(in_step.code > TAP, False, row, has_row)
     return Pieces(
         count=count,
         expanded_line=expanded,
@@ -129,6 +139,8 @@ def pieces_of(task: Task, taps: Taps, around: Around) -> Pieces:
         special=special[line],
         converted=places & other_unit[line],
         homed=_goes_home(task)[line] & has_row,
+        pace=_at_pieces(in_step.pace, np.nan, row, has_row),
+        tap_code=_at_pieces(in_step.code, -1, row, has_row),
         tap=tap,
         apart=tap & (taps.count > 1)[line],
     )
@@ -155,6 +167,8 @@ def _stores_taps(task: Task, count: Ints) -> Flags:
 
     They may say where the taps behind them go (K0), which stay cycles.
     """
+    if task.manner.saying.taps_in_step:
+        return np.zeros(task.read.live, np.bool_)
     return np.asarray(np.isin(task.read.modes.cycle, list(TAPPING)) & (count == 0))
 
 
@@ -177,10 +191,10 @@ def _of_nurbs(task: Task) -> Flags:
     return points if task.manner.curves else np.zeros_like(points)
 
 
-def _special(task: Task, taps: Taps) -> Flags:
+def _special(task: Task, taps: Taps, in_step: Flags) -> Flags:
     """Return the lines (live,) that are written as they stand, in one piece."""
     path = task.path
-    own = ~path.is_free
+    own = ~path.is_free & ~in_step
     own[[given.row for given in path.given if given.moves]] = False
     special = np.zeros(task.read.live, np.bool_)
     special[path.block[own]] = True

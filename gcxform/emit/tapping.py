@@ -62,9 +62,13 @@ class Taps:
     rows    (blocks,) the first row of each block that is written anew
     aside   mm; how far off the control stands after the window, if a tap is its last move
     level   in words: the level from which the cycle in force after the window has begun; nan: none
+
+    Those `in_step` (rows,) are said by another code, and are none of these.
     """
 
-    def __init__(self, task: Task, positions: Positions, believed: Believed) -> None:
+    def __init__(
+        self, task: Task, positions: Positions, believed: Believed, in_step: Flags
+    ) -> None:
         self.task, self.positions = task, positions
         self.path, self.original = task.path, task.read.path
         live = task.read.live
@@ -75,7 +79,7 @@ class Taps:
         self.level, self.moved, self.aside = np.nan, False, believed.aside
         self._check_start(0)
         self.active = task.read.modes.cycle[:live] != CYCLE_OFF
-        tied = self.path.form == Form.SYNCHRONISED
+        tied = (self.path.form == Form.SYNCHRONISED) & ~in_step
         if not tied.any() and not self.active[-1:].any():
             return
         self.row = np.searchsorted(self.path.block, np.arange(live + 1))

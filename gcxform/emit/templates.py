@@ -303,6 +303,8 @@ class TemplateWriter:
         if address in self.cycle_words.waiting:
             self.draft.fields += self.cycle_words.at(address, self.draft.gap_before(lead))
             return True
+        if self.key.motion >= 0:  # a tap that was none of a cycle
+            return address == "K"
         rule = self.source.cycle_rule
         return self.key.apart and rule is not None and address == rule.repeats
 
@@ -388,11 +390,11 @@ class TemplateWriter:
             self._centre(b"")
         if self.key.feed is Feed.KEEP:
             self._copy(word, self.draft.gap_before(lead) if self.draft.fields else lead, slot)
-        elif self.key.feed is Feed.WRITE:
-            self.draft.fields.append(FeedWord(self.draft.gap_before(lead)))
+        elif self.key.feed > Feed.KEEP:
+            self.draft.fields.append(FeedWord(self.draft.gap_before(lead), self.key.feed))
         self.feed_written = True
 
     def _feed_at_end(self) -> None:
-        if self.key.feed is Feed.WRITE and not self.feed_written:
+        if self.key.feed > Feed.KEEP and not self.feed_written:
             self.feed_written = True
-            self.draft.fields.append(FeedWord(self.draft.gap_before(b"")))
+            self.draft.fields.append(FeedWord(self.draft.gap_before(b""), self.key.feed))

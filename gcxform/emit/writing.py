@@ -129,7 +129,7 @@ class Writing:
             (pieces.converted, 2),
             (pieces.homed, 2),
             (self.presets.lines[pieces.line], 2),
-            (stated.feed.word, 3),
+            (stated.feed.word, len(Feed)),
             (inch, 2),
         ]
         if arc.any():
@@ -247,13 +247,14 @@ class Writing:
             everywhere = np.ones(len(rows), np.bool_)
             renderer.number(field.gap, field.address, whole, decimals, everywhere)
         else:
-            feed = self.stated.feed.value[members]
-            decimals = decimals_for(feed, manner.decimals_of("F", inch))
+            feed, address = self.stated.feed.value[members], field.address
+            decimals = manner.decimals_of(address, inch)
+            decimals = decimals_for(feed, decimals)
             whole = quantise(feed, decimals)
             self._check_feed(feed, whole / 10.0**decimals, members)
             everywhere = np.ones(len(rows), np.bool_)
             point = manner.target.point_rule.required
-            renderer.number(field.gap, "F", whole, decimals, everywhere, point)
+            renderer.number(field.gap, address, whole, decimals, everywhere, point)
 
     def _copied_text(self, field: CopiedText, lines: Ints, renderer: Renderer) -> None:
         """Write texts of the source; comments as those of the target."""

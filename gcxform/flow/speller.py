@@ -97,7 +97,9 @@ class Speller(ABC):
     def other_length(self, number: str) -> UnspeakableError:
         """Return why the length of a tool has no words that is not the one in the spindle."""
         if self.in_spindle not in ("", "0"):
-            return UnspeakableError("the length of another tool than the one in the spindle")
+            message = "the length of another tool than the one in the spindle"
+            hint = f"lengths are of the tools there: write H{self.in_spindle}, if its own is meant"
+            return UnspeakableError(message, hint)
         hint = f"write T and M6 before; or say tool = {number} in [input], if it is in the spindle"
         return UnspeakableError("a length, and which tool is in the spindle is not known", hint)
 

@@ -120,7 +120,8 @@ class OutputSpec:
         CodeList, Option("M codes of the control written for that leave its axes where they stand")
     ] = ()
     taps: Annotated[
-        Literal["", "alike"], Option("what the spindle does in G74 and G84 of another control")
+        Literal["", "alike", "in-step"],
+        Option("what the spindle does in G74 and G84 of another control"),
     ] = ""
 
 

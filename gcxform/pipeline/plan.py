@@ -78,7 +78,8 @@ class Plan:
     m_codes  M codes of the source, and what takes the place of each in the output
     drop     codes of the source that are left out
     inert    M codes of the target that leave its axes where they stand
-    taps     "alike": both controls tie the spindle to the feed in the same way in G74 and G84
+    taps     "alike": both controls tie the spindle to the feed in the same way in G74 and G84;
+             "in-step": they tap in step with the spindle, as G33.1 does
     whole    why a program in a language of its own is not written back line by line; nothing
              where it is
     chord_error  mm within which splines become lines without a step; 0: they stay
@@ -222,7 +223,7 @@ class Plan:
             expands_cycles(self.path_passes),
             curves=self.machine_reading.curves,
             said=self.saying,
-            foreign_cycles=foreign_cycles(self.source, self.target),
+            foreign_cycles=foreign_cycles(self.source, self.target, self.saying.taps_in_step),
         )
         promised = self.promised()
         if not np.isfinite(promised):
@@ -324,8 +325,7 @@ class Plan:
         """How the target says what codes of the source do."""
         folds = any(WORKPIECE_FRAME in step.ensures for step in self.path_passes)
         tips = self.source.tip_rule.codes if folds and self.source is not self.target else {}
-        alike = self.taps == "alike"
-        return Saying(self.source, self.target, self.m_codes, self.drop, tips, alike)
+        return Saying(self.source, self.target, self.m_codes, self.drop, tips, self.taps)
 
     @property
     def copies(self) -> bool:

@@ -102,7 +102,7 @@ def said_in_moves(
         return path
     with placing(window, file):
         here = np.isin(read.modes.cycle[path.block], list(foreign))
-        return cycles_as_moves(path, None if whole else here)
+        return cycles_as_moves(path, None if whole else here, plan.saying.taps_in_step)
 
 
 def _straight(path: Toolpath, chord_error: float) -> Toolpath:

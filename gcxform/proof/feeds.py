@@ -56,6 +56,7 @@ class FeedProof:
 
     modes         the feed modes into which passes have converted feeds, in their order
     budget        mm by which the path may be off; `angle_budget`: degrees, of rotary axes
+    tapped        (n,) rows of the source that have a proof of their own (`taps_in_step.py`)
     speeds        by axis: the top speed (mm/min, deg/min) and what rounding may add to a way (mm,
                   deg); at full speed a move may take longer than its feed says
     """
@@ -64,12 +65,13 @@ class FeedProof:
     modes: Sequence[FeedMode]
     budget: float
     angle_budget: float
+    tapped: Flags
     speeds: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def wrong(self) -> Iterator[Wrong]:
         """Yield where feeds are not those of the source; in inverse time, the times must add up."""
         before, after, owner = self.trace.before, self.trace.after, self.trace.owner
-        moving = before.kind[owner] != Kind.RAPID
+        moving = (before.kind[owner] != Kind.RAPID) & ~self.tapped[owner]
         other = before.feed_mode[owner] != after.feed_mode
         meant = after.feed_mode == self.modes[-1] if self.modes else False
         strange = other & moving & ~np.asarray(meant)

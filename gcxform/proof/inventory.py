@@ -33,7 +33,7 @@ from gcxform.proof.trace import Trace
 from gcxform.stamps.comment import without_lines
 from gcxform.syntax.scan import Window
 from gcxform.system.arrays import Ints
-from gcxform.toolpath.path import Event
+from gcxform.toolpath.path import Event, Form
 from gcxform.values import dataclass
 
 MESSAGE = "(...)"
@@ -204,7 +204,7 @@ class Books:
         self.switches = switches
         self.crossing = context.source is not context.target
         self.held, self.behind, self.live, self.skipped = Tally(), Tally(), Tally(), Tally()
-        self.set_aside = self.done = self.inner = self.given = 0
+        self.set_aside = self.done = self.inner = self.given = self.rigid = 0
         self.assigned: list[tuple[Key, float]] = []
         self.text_behind = sha256()
         self.said: Counter[tuple[str, str]] = Counter()
@@ -224,6 +224,8 @@ class Books:
         self._say(events, [each.text for each in read.unknown], ways)
         self.done += sum(event.what in self.switches for event in events)
         self.given += given
+        if self.context.saying.makes_taps_rigid:
+            self.rigid += int((read.path.form == Form.SYNCHRONISED).sum()) // 2
         self.inner += given + sum(event.within for event in events)
         if self.executed is not None:
             self.assigned += [(each.key, each.value) for each in read.assigned]
@@ -292,6 +294,7 @@ class Books:
                 account.rule(f"no name of programs in {target}", named, ("definitions",))
         self._account_said(account)
         account.rule_of("done by a step instead of the control", "m_codes", -self.done)
+        account.rule_of("M29 before taps that were G33.1", "m_codes", self.rigid)
         account.rule("moves cut, joined or written out by steps", account.rest, ("motions",))
         account.rule_of("G61 and G64 around cycles written out", "path_modes", path_modes)
         if self.inner:

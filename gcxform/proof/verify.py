@@ -49,6 +49,7 @@ from gcxform.proof.known_positions import as_known, lost_in_target
 from gcxform.proof.lost_words import elsewhere
 from gcxform.proof.path_modes import PathModes
 from gcxform.proof.spared_rapids import led_elsewhere, spared_rows, told
+from gcxform.proof.taps_in_step import TapProof
 from gcxform.proof.trace import Trace
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED, Undecided
@@ -89,6 +90,7 @@ class Verifier:
         self.limit = limit
         self.centres = CentreProof(context, file)
         self.path_modes = PathModes(context)
+        self.taps = TapProof(context)
         homes = any(step.demands.written_for is not None for step in passes)
         self.events = EventProof(context, folded, switches, homes)
         self.feed_modes = [mode for step in passes if (mode := step.demands.feed_mode) is not None]
@@ -125,6 +127,7 @@ class Verifier:
             back = self.interpreter.interpret(again, self.reader.table)
         except GcxformError as error:
             raise not_taken(error, self.context, self.file, again, source) from None
+        back = self.taps.of_cycles(back)
         self.findings.file = self.whole.add(again, self.reader.table, back.live)
         path = back.path
         self.findings.inch |= bool(path.blocks.inch[path.block].any())
@@ -136,12 +139,16 @@ class Verifier:
             path = step.undo(path, self.context)
         trace = Trace(read.path, lines, back.path, path, source, nth, again.first_line)
         self._count(read, lines, trace)
-        self._compare(trace, spared_rows(self.passes, read.path), known)
+        tapped = self.taps.rows(read)
+        self._compare(trace, spared_rows(self.passes, read.path), known, tapped)
+        for wrong in self.taps.wrong(read, back, tapped, trace):
+            self._raise(*wrong)
         self._centres(trace)
         self._forms(trace, read, back)
-        for wrong in self._proof(trace).left_behind(read, back) if self.feed_modes else ():
+        for wrong in self._proof(trace, tapped).left_behind(read, back) if self.feed_modes else ():
             self._raise(*wrong)
-        old, new = self.events.of_source(read.path), self.events.told(back.path)
+        source_path = self.taps.without_inner(read.path, tapped)
+        old, new = self.events.of_source(source_path), self.events.told(back.path)
         new, moded = self.path_modes.check(old, new, trace, read, self.budget)
         if moded is not None:
             self._raise(*moded)
@@ -162,10 +169,11 @@ class Verifier:
         found.rapids += int((read.path.kind == Kind.RAPID).sum())
         found.lines_after_end += len(lines) - read.live
 
-    def _compare(self, trace: Trace, spared: Flags, written: Toolpath) -> None:
+    def _compare(self, trace: Trace, spared: Flags, written: Toolpath, tapped: Flags) -> None:
         """Compare moves; each of the output must belong to one of the input, or a run of them.
 
-        `spared` are the rows of the input that are left to the machine; `written` is not undone.
+        `spared` are the rows of the input that are left to the machine, `tapped` those of taps that
+        another code says; `written` is not undone.
         """
         before, after = trace.before, trace.after
         if len(trace.owner) and int(trace.owner.min()) < 0:
@@ -195,7 +203,7 @@ class Verifier:
             self._fail(f"a rotary axis is {off.angle[turned]:.5f} degrees off", trace, turned)
         self._kinds(trace)
         self._sides(trace)
-        self._feeds(self._proof(trace))
+        self._feeds(self._proof(trace, tapped))
 
     def _feeds(self, proof: FeedProof) -> None:
         if self.context.target.feed_rule.of_linear_axes:
@@ -265,9 +273,9 @@ class Verifier:
         self.findings.spared_by = max(self.findings.spared_by, float(known.max(initial=0.0)))
         return np.where(free, 0.0, distance)
 
-    def _proof(self, trace: Trace) -> FeedProof:
-        speeds = self.speeds
-        return FeedProof(trace, self.feed_modes, self.budget, self.angle_budget, speeds)
+    def _proof(self, trace: Trace, tapped: Flags) -> FeedProof:
+        limits = self.budget, self.angle_budget
+        return FeedProof(trace, self.feed_modes, *limits, tapped, self.speeds)
 
     def _note_worst(self, distance: float, trace: Trace, row: int) -> None:
         self.findings.deviation = distance

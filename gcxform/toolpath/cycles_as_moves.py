@@ -9,19 +9,21 @@ from gcxform.toolpath.facts import inseparable_cycles
 from gcxform.toolpath.path import Form, Toolpath
 
 
-def cycles_as_moves(path: Toolpath, which: Flags | None = None) -> Toolpath:
+def cycles_as_moves(path: Toolpath, which: Flags | None = None, in_step: bool = False) -> Toolpath:
     """Return a path with the rows of cycles as plain rows; `which` (n,) limits them.
 
-    Tapping stays as it stands, and so do cycles that orient the spindle, and those between which
+    `in_step`: taps are said by another code, and what leads to them and away becomes plain. Else
+    tapping stays as it stands, and so do cycles that orient the spindle, and those between which
     and one of these there is no other move. Raises InputError.
     """
-    tied = inseparable_cycles(path)
+    tied = inseparable_cycles(path, in_step)
     cycle = (path.form == Form.CYCLE) & ~tied
     if which is not None:
         cycle &= which
     if not cycle.any():
         return path
-    _check_dwells(path, cycle)
+    if not in_step:
+        _check_dwells(path, cycle)
     path = path.replace(form=np.where(cycle, Form.PLAIN, path.form).astype(np.int8))
     still = cycle & (path.end == path.start).all(axis=1)
     return path.with_rows((~still).astype(np.int64)) if still.any() else path

@@ -47,14 +47,15 @@ ABSOLUTE = Fact(
 )
 
 
-def inseparable_cycles(path: Toolpath) -> Flags:
+def inseparable_cycles(path: Toolpath, in_step: bool = False) -> Flags:
     """Return the rows (n,) of cycles that cannot be written as plain moves.
 
     These are tapping, cycles that orient the spindle, and the cycles between which and one of these
     there is no plain move: what stays in force, the level they began from above all, ties them.
+    `in_step`: tapping is said by another code, and ties none.
     """
     cycle = one_of(path.form, (Form.CYCLE, Form.SYNCHRONISED))
-    tied = path.form == Form.SYNCHRONISED
+    tied = (path.form == Form.SYNCHRONISED) & (not in_step)
     oriented = [event.row - 1 for event in path.events if event.within and event.what == "M19"]
     tied[oriented] = True
     run = np.cumsum(~cycle)

@@ -114,8 +114,8 @@ MUTATIONS = (
     Mutation(
         "a thread in passes is offered to be written out",
         "gcxform/emit/codewords.py",
-        "if name not in EXPANDED or cycle is None or cycle.refused:",
-        "if name not in EXPANDED:",
+        "if cycle is not None and cycle.refused:",
+        "if False:",
         f"{CORPUS}[dialects/across/thread-in-passes]",
     ),
     Mutation(

@@ -232,8 +232,8 @@ MUTATIONS = (
     Mutation(
         "saying: that taps are alike is not said in the certificate",
         "gcxform/emit/emitter.py",
-        "manner.saying.taps_alike and cycles.any()",
-        "manner.saying.taps_alike and False",
+        'manner.saying.taps == "alike" and cycles.any()',
+        "False",
         "tests/test_corpus.py::test_case[dialects/across/taps-alike]",
     ),
     Mutation(

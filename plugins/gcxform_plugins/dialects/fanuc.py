@@ -46,6 +46,7 @@
 | G87, G88 | depend on parameters or on the operator: refused |
 | `%` in a comment | ends the file there: none is written from programs of other controls |
 | M29 | the tap that follows is in step with the spindle: it moves nothing itself |
+| G74, G84 for a SINUMERIK, a TNC, LinuxCNC | in step with the spindle: `taps = "in-step"` |
 | G96 | changes the speed of the spindle and no path |
 | G30 | as G28, to the point that `[home."G30 P2"]` names, or to one that is not known |
 | G43.5 with I J K | the tool axis at the end of a line, on the table (19696#5 is 0, or PS5459) |

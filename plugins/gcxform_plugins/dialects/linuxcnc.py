@@ -104,6 +104,7 @@ CYCLE_RULE = v.CycleRule(
     stays=v.Staying(dwell=True),
     one_plane=False,
     initial_level=False,
+    taps_float=True,
 )
 FILES = gx.LookupRule(names=("{name}",), endings=(".ngc",))
 USER_CODE = gx.MCode("user", takes="PQ", act="user-code", loses_position=True)
