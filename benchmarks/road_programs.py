@@ -37,6 +37,12 @@ def nearby(lines: int) -> Lines:
     return straight(lines, 0.0004)
 
 
+def decimals(lines: int) -> Lines:
+    """Yield moves with nine decimals."""
+    for x, y, z in points(lines):
+        yield f"G1 X{x:.3f} Y{y:.9f} Z{z:.9f}"
+
+
 def comments(lines: int) -> Lines:
     """Yield moves, each with a comment of its own."""
     for k in range(lines):
@@ -194,6 +200,7 @@ def klartext_plain(lines: int) -> Lines:
 PROGRAMS: dict[str, Callable[[int], Lines]] = {
     "straight": straight,
     "nearby": nearby,
+    "decimals": decimals,
     "comments": comments,
     "expressions": expressions,
     "assignments": assignments,

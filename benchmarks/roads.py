@@ -59,6 +59,7 @@ def plain(name: str, dialect: str, most: float) -> Road:
 
 ROADS = (
     Road("straight", "straight", ("run", *LINUXCNC, "-x", "absolute"), 2.6, STRAIGHT_GOAL),
+    run("nine decimals", "decimals", 2.6),
     run("comments", "comments", 4.5),
     run("expressions", "expressions", 4.0),
     run("assignments", "assignments", 5.0),

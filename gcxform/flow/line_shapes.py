@@ -89,6 +89,7 @@ class LineShapes(ABC):
         self._partly: dict[tuple[str, ...], Shape] = {}
         self._fixed: dict[str, tuple[int, ...]] = {}
         self._parts_ahead: dict[int, Ahead] = {}
+        self._computing: dict[str, bool] = {}
 
     @abstractmethod
     def place_of(self, line: int) -> tuple[str, int]:
@@ -152,6 +153,17 @@ class LineShapes(ABC):
         """Return the shape of one of the lines ahead, if there was one like it."""
         key = ahead.keys[k]
         return self._shapes.get(key) or self._shape_in_part(key, ahead.numbers, ahead.starts[k])
+
+    def computes_alone(self, ahead: Ahead, k: int) -> bool:
+        """Whether one of the lines ahead computes, as others like it, and has no comment."""
+        found = self._computing.get(ahead.keys[k])
+        if found is not None:
+            return found
+        shape = self.known_shape(ahead, k)
+        if shape is None:
+            return False
+        found = self._computing[ahead.keys[k]] = shape.computes and not shape.comments
+        return found
 
     def _shape_in_part(self, key: str, numbers: Sequence[str], at: int = 0) -> Shape | None:
         """Return the shape of a key with these numbers in its names and comments, if known."""

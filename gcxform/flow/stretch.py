@@ -56,12 +56,12 @@ class Stepped(Protocol):
 class Computed(NamedTuple):
     """A line that computes, in plain words: their shape, None without any, and their numbers.
 
-    `done` does all else that the line does.
+    `done` does all else that the line does, if anything.
     """
 
     shape: Known | None
     numbers: Numbers
-    done: Callable[[], None]
+    done: Callable[[], None] | None
 
 
 class Ahead(NamedTuple):
@@ -163,7 +163,8 @@ class Stretch:
             self.texts.append(step.in_order)
             self.given += line.numbers
             self.node = step.behind
-        line.done()
+        if line.done is not None:
+            line.done()
         return True
 
     def _step(self, shape: Known, slots: Slots | None, numbers: Numbers, at: int) -> Stepped | None:

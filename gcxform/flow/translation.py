@@ -245,10 +245,7 @@ class Translator(LineWriting):
 
     def _in_plain_words(self, ahead: Ahead, k: int) -> Computed | None:
         """Return one of the lines ahead in plain words; None for one that is not so or is new."""
-        shape = self.known_shape(ahead, k)
-        if shape is None or not shape.computes or shape.comments:
-            return None
-        return self.plain_words(ahead, k)
+        return self.plain_words(ahead, k) if self.computes_alone(ahead, k) else None
 
     def _plain_behind(self) -> list[str]:
         """Return the blocks of the plain lines from here on, one for each; go on to them."""
@@ -319,7 +316,8 @@ class Translator(LineWriting):
             blocks = None if slots is None else learned.blocks(found.shape, slots, found.numbers)
         if blocks is None:
             return None
-        found.done()
+        if found.done is not None:
+            found.done()
         return _with_comments(blocks, shape.comments)
 
     def learnt_text(self, text: str, blocks: Callable[[Sequence[Item]], list[str]]) -> list[str]:

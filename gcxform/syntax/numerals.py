@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from gcxform.system.arrays import Ints
+from gcxform.system.arrays import Floats, Ints
 
 LONGEST = 8  # digits on either side of the point: together exact in 64 bits
+WIDEST = 40  # bytes of a number that has more, and is read by itself
 TEN_TO = 10.0 ** np.arange(LONGEST + 1)
 KEEP_LAST = np.array([0, 0xFF000000, 0xFFFF0000, 0xFFFFFF00, 0xFFFFFFFF], np.uint32)
 """Masks for the last 0 ... 4 of four bytes."""
@@ -40,3 +41,9 @@ class Digits:
         word = (word & np.uint32(0x0F0F0F0F)) * np.uint32(2561) >> np.uint32(8)
         word = (word & np.uint32(0x00FF00FF)) * np.uint32(6553601) >> np.uint32(16)
         return word.astype(np.int64)
+
+
+def put_long(value: Floats, places: Ints, text: bytes, start: Ints, end: Ints) -> None:
+    """Put numbers that are read one by one at their places among values."""
+    spans = zip(start.tolist(), end.tolist(), strict=True)
+    value[places] = [float(text[first:last]) for first, last in spans]

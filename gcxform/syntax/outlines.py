@@ -9,9 +9,8 @@ of them.
     #1=[2.5*#2] (wall 3)      outline  #1=[.*#2] .      marks  2.5  (wall 3)
 
 Nothing is decided about the language. Digits behind G, M, O and `#` stay, for they are names. A
-line that is not clear here (brackets in comments, numbers with blanks inside, more than eight
-digits on a side of the point) has no outline and goes to lark by itself, and so does a comment that
-the control executes.
+line that is not clear here (brackets in comments, numbers with blanks inside or of more than forty
+digits) has no outline and goes to lark by itself, and so does a comment that the control executes.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
+from gcxform.syntax.numerals import LONGEST, TEN_TO, WIDEST, Digits, put_long
 from gcxform.syntax.tree import COMPUTED
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints
 from gcxform.values import dataclass
@@ -190,7 +189,7 @@ class _Scan:
         return np.asarray(is_name)
 
     def _values(self, start: Ints, end: Ints) -> tuple[Floats, Ints]:
-        """Return values and decimals of numbers; those that are not exact at once are unclear."""
+        """Return values and decimals of numbers; those that are none are unclear."""
         places = np.append(np.flatnonzero(self.raw == 46), len(self.raw))
         first = np.searchsorted(places, start)
         has_point = places[first] < end
@@ -198,10 +197,13 @@ class _Scan:
         split = np.where(has_point, places[first], end)
         fraction = np.where(has_point, end - split - 1, -1)
         whole, part = split - start, np.maximum(fraction, 0)
-        wrong = twice | (whole > LONGEST) | (part > LONGEST) | (whole + part == 0)
-        self._refuse(start[wrong | (whole + part > EXACT)])
+        wrong = twice | (whole + part == 0) | (whole + part > WIDEST)
+        self._refuse(start[wrong])
         digits, scale = Digits(self.text), TEN_TO[np.minimum(part, LONGEST)]
         value = (digits.before(split, whole) * scale + digits.before(end, part)) / scale
+        long = (whole > LONGEST) | (part > LONGEST) | (whole + part > EXACT)
+        found = np.flatnonzero(long & ~wrong)
+        put_long(value, found, self.text, start[found], end[found])
         return value, fraction
 
     def outlines(self, lines: Ints, offset: Ints) -> Outlines:

@@ -9,14 +9,15 @@ blanks alone has an outline instead (`outlines.py`), or goes to lark by itself.
 
     N10 G1 X1.5 Y-2.      shape  N# G1 X# Y#      numbers  10  1.5  -2.
 
-Numbers are read as integer mantissas with decimals, and every number that is taken is exact.
+Numbers are read as integer mantissas with decimals, and every number that is taken is exact; those
+with more digits, as computed ones have, are read one by one.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from gcxform.syntax.numerals import LONGEST, TEN_TO, Digits
+from gcxform.syntax.numerals import LONGEST, TEN_TO, WIDEST, Digits, put_long
 from gcxform.syntax.outlines import outline
 from gcxform.syntax.shapes import OWN, NumberColumns, ShapeTable
 from gcxform.system.arrays import Bytes, Flags, Floats, Ints
@@ -130,6 +131,7 @@ class _Runs:
     negative: Flags
     is_code: Flags
     is_plain: Flags
+    is_long: Flags
 
 
 def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
@@ -149,13 +151,13 @@ def _runs(text: bytes, raw: Bytes, kind: Bytes) -> _Runs:
     decimals = np.where(point >= 0, end - point - 1, -1)
     fraction = np.maximum(decimals, 0)
     whole = split - first
-    plain &= (whole <= LONGEST) & (fraction <= LONGEST) & (whole + fraction > 0)
-    plain &= (before == LETTER) | (before == CODE)
+    plain &= (whole + fraction > 0) & ((before == LETTER) | (before == CODE))
     digits = Digits(text)
     mantissa = digits.before(split, whole) * TEN_TO_INT[np.minimum(fraction, LONGEST)]
     mantissa += digits.before(end, fraction)
-    plain &= mantissa < EXACT
-    return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain)
+    long = (whole > LONGEST) | (fraction > LONGEST) | (mantissa >= EXACT)
+    plain &= ~long | ((before == LETTER) & (end - start <= WIDEST))
+    return _Runs(start, end, mantissa, decimals, raw[start] == 45, before == CODE, plain, long)
 
 
 def _points(kind: Bytes, numeric: Flags, start: Ints) -> tuple[Ints, Flags]:
@@ -209,11 +211,20 @@ def _shapes(
     first = _first_numbers(table, shape, odd, runs.start[slots], start)
     value = runs.mantissa[slots] / TEN_TO[np.clip(runs.decimals[slots], 0, LONGEST)]
     np.negative(value, out=value, where=runs.negative[slots])
+    _read_long(value, runs, text)
     columns = (first, value, runs.decimals[slots], runs.start[slots], runs.end[slots])
     columns = table.append_own(shape, own, columns, start)
     if found is not None:
         columns = table.append_outlined(outlined, found, columns, start)
     return shape, columns
+
+
+def _read_long(value: Floats, runs: _Runs, text: bytes) -> None:
+    """Put numbers of many digits among the values of those that are no codes."""
+    found = np.flatnonzero(runs.is_long & runs.is_plain)
+    if len(found):
+        places = np.cumsum(~runs.is_code)[found] - 1
+        put_long(value, places, text, runs.start[found], runs.end[found])
 
 
 def _first_numbers(

@@ -199,6 +199,20 @@ MUTATIONS = (
         "tests/properties/test_reading.py",
     ),
     Mutation(
+        "scan: numbers of many digits are what their last digits say",
+        "gcxform/syntax/scan.py",
+        "    _read_long(value, runs, text)\n",
+        "",
+        "tests/properties/test_reading.py::test_numbers_are_those_of_python",
+    ),
+    Mutation(
+        "outlines: numbers of many digits are what their last digits say",
+        "gcxform/syntax/outlines.py",
+        "np.flatnonzero(long & ~wrong)",
+        "np.flatnonzero(long & wrong)",
+        "tests/properties/test_reading.py::test_outlines_say_what_the_grammar_says",
+    ),
+    Mutation(
         "outlines: executed comments are text",
         "gcxform/syntax/outlines.py",
         "[at for at in signs.tolist() if self.looks.match(text, at)]",

@@ -1019,22 +1019,22 @@ MUTATIONS = (
     Mutation(
         "siemens: lines of one key and other forms are compiled as one",
         "plugins/gcxform_plugins/dialects/siemens/computing.py",
-        'form = ahead.keys[k], " ".join(numbers).encode().translate(ZEROS)',
+        "form = ahead.keys[k], text.encode().translate(ZEROS)",
         'form = ahead.keys[k], b""',
         f"{LEARNT}::test_programs_are_translated_alike",
     ),
     Mutation(
         "siemens: a compiled line reads what was before it",
         COMPILING,
-        "if sets and read and len(words) + len(sets) > 1:",
+        "if sets and read and words + len(sets) > 1:",
         "if False:",
         f"{LEARNT}::test_a_compiled_line_does_its_assignments_in_turn",
     ),
     Mutation(
         "siemens: a sign is lost where a line is compiled",
         COMPILING,
-        "-inner(numbers) if minus else inner(numbers)",
-        "inner(numbers)",
+        'f"({children[0]}{self.value(children[1])})"',
+        'f"(+{self.value(children[1])})"',
         f"{LEARNT}::test_programs_are_translated_alike",
     ),
     Mutation(

@@ -210,19 +210,25 @@ COMPUTING = (
 @given(lines=st.lists(st.lists(st.sampled_from(COMPUTING), max_size=5), min_size=1, max_size=8))
 @example([["X[#1+2.5]", "(wall 3)"], ["X[#1+12.]", "(w)"], [";tail 5"], ["(wall 3)"]])
 @example([["X1.5"], ["X1.2.3"]])
+@example([["X[#1+0.30000000000000004]"], ["X[#1+.123456789]"], ["X[#1+1.5]", "N123456789"]])
+@example([["Y-0.30000000000000004", "(wall 3)"], ["Y-1.5", "(wall 3)"]])
 @pytest.mark.parametrize("gap", ["", " "])
 def test_outlines_say_what_the_grammar_says(name: str, gap: str, lines: list[list[str]]) -> None:
     check_program("\n".join(gap.join(line) for line in lines).encode("latin-1"), name)
 
 
 @in_every_dialect
-@given(digits=st.from_regex(r"[+-]?([0-9]{1,18}\.?[0-9]{0,18}|\.[0-9]{1,18})", fullmatch=True))
+@given(digits=st.from_regex(r"[+-]?([0-9]{1,25}\.?[0-9]{0,25}|\.[0-9]{1,25})", fullmatch=True))
 @example("-0")
 @example("-.0")
 @example("00000000.00000001")
 @example("9007199254740993")
 @example("0.1")
 @example("99999999.99999999")
+@example("-0.30000000000000004")
+@example("-.000000000")
+@example("+123456789")
+@example("1" * 21 + "." + "1" * 19)
 def test_numbers_are_those_of_python(name: str, digits: str) -> None:
     window = WindowReader(dialect_of(name)).read(f"G1 X{digits}\n".encode())
     first = int(window.first_number[0])

@@ -1,13 +1,13 @@
 """Lines that compute, compiled: of lines of one shape their numbers alone go on.
 
-The tree of the first of them becomes functions of its numbers and of R parameters, of which each
-does what `Expressions` does with its node. A line that takes anything else is left to that: one
-with a variable of the program or the control, and one that reads what it sets itself.
+The tree of the first of them becomes a function, written as Python, of its numbers and of R
+parameters: it does what `Expressions` does with each node. A line that takes anything else is left
+to that: one with a variable of the program or the control, and one that reads what it sets itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import chain
 from typing import Any, NamedTuple
@@ -16,17 +16,21 @@ from lark import Token
 
 import gcxform as gx
 from gcxform_plugins.dialects.siemens.arithmetic import COUNTS
-from gcxform_plugins.dialects.siemens.cells import converted
-from gcxform_plugins.dialects.siemens.expressions import PARAMETER, Expressions, number_text
+from gcxform_plugins.dialects.siemens.expressions import PARAMETER, Expressions, lost, number_text
 from gcxform_plugins.dialects.siemens.nodes import Node, names_in, rule_of, span_of
 from gcxform_plugins.dialects.siemens.texts import FUNCTIONS
 
 WORDS = frozenset((*"XYZABCIJKF", "CR"))
 """Addresses of words whose numbers may be any."""
 OPERATORS = frozenset(("+", "-", "*", "/", "DIV", "MOD"))
+CARRY_ON = frozenset("+-*")
+"""Those whose results are not finite where an operand is not: it is looked at behind them."""
+DEEP = 100  # brackets of what is written as Python, which takes 200 inside each other
 MOST = 4096  # shapes that are kept
 Numbers = Sequence[str]
-Valued = Callable[[Numbers], float]
+Given = Sequence[tuple[int, float]]
+Values = Mapping[int, Any]
+Run = Callable[[Numbers, Values], tuple[Numbers, Given]]
 Places = dict[tuple[int, int], int]
 
 
@@ -35,39 +39,35 @@ class _LeftError(Exception):
 
 
 class Compiled(NamedTuple):
-    """A line: the pieces of its plain text, what stands between them, and what is set.
+    """A line: the pieces of its plain text, R parameters that it reads, and its function.
 
-    `places` are numbers of the line, or -1 for what the next word is worth.
+    For numbers and R parameters that gives what stands between the pieces, and R parameters with
+    what they become.
     """
 
     pieces: tuple[str, ...]
-    places: tuple[int, ...]
-    words: tuple[Valued, ...]
-    sets: tuple[tuple[int, Valued], ...]
+    reads: tuple[int, ...]
+    run: Run
+
+    def worth(self, numbers: Numbers, r: Values) -> tuple[Numbers, Given]:
+        """Return what a line is worth. Raises NoValueError, OverflowError."""
+        for number in self.reads:
+            if r.get(number) is None:
+                raise lost(f"the value of R{number}")
+        return self.run(numbers, r)
 
     def text(self, told: Numbers) -> str:
         """Return the line in plain words, for what it is `told`."""
         return "".join(chain(*zip(self.pieces, (*told, ""), strict=True)))
 
-    def told(self, numbers: Numbers) -> list[str]:
-        """Return what stands between the pieces. Raises NoValueError, OverflowError."""
-        if not self.words:
-            return [numbers[place] for place in self.places]
-        worth = iter([number_text(value(numbers)) for value in self.words])
-        return [numbers[place] if place >= 0 else next(worth) for place in self.places]
-
-    def given(self, numbers: Numbers) -> list[tuple[int, Any]]:
-        """Return R parameters and what they become. Raises NoValueError, OverflowError."""
-        return [(n, converted("REAL", value(numbers))) for n, value in self.sets]
-
     def known(
-        self, numbers: Numbers, shape: Callable[[str], tuple[Any, Numbers]]
+        self, numbers: Numbers, r: Values, shape: Callable[[str], tuple[Any, Numbers]]
     ) -> InPlainWords | None:
         """Return the line with the shape of its plain text; None where no such lines are learnt.
 
         Raises NoValueError, OverflowError.
         """
-        told = self.told(numbers)
+        told, _ = self.worth(numbers, r)
         text = self.text(told)
         if not text.strip():
             return InPlainWords(self, None, ())
@@ -89,12 +89,12 @@ class InPlainWords(NamedTuple):
     shape: Any
     signs: tuple[str, ...]
 
-    def computed(self, numbers: Numbers, take: Callable[[Any], None]) -> gx.Computed:
+    def computed(self, numbers: Numbers, r: Values, take: Callable[[Given], None]) -> gx.Computed:
         """Return the line for its numbers. Raises NoValueError, OverflowError."""
-        told, given = self.line.told(numbers), self.line.given(numbers)
+        told, given = self.line.worth(numbers, r)
         if self.signs:
             told = [sign + number for sign, number in zip(self.signs, told, strict=True)]
-        return gx.Computed(self.shape, told, partial(take, given))
+        return gx.Computed(self.shape, told, partial(take, given) if given else None)
 
 
 class Compiler:
@@ -114,11 +114,9 @@ class Compiler:
     def _compiled(self, tree: Node, text: str, slots: Places) -> Compiled:
         if '"' in text:
             raise _LeftError
-        at = 0
-        parts: list[str | int] = []
-        words: list[Valued] = []
-        sets: dict[int, Valued] = {}
-        read: set[str] = set()
+        at, source = 0, _Source(self.worth, slots)
+        parts: list[str | _Said] = []
+        words, sets, read = 0, dict[int, str](), set[str]()
         for node in tree.children:
             rule = rule_of(node)
             if rule in ("word", "sequence"):
@@ -133,16 +131,15 @@ class Compiler:
             if PARAMETER.fullmatch(name):
                 if int(name[1:]) in sets:
                     raise _LeftError
-                sets[int(name[1:])] = self._value(value, slots)
+                sets[int(name[1:])] = source.finite(value)
             else:
-                before, worth, behind = self._word(name, value, slots)
-                words.append(worth)
-                parts += (before, -1, behind)
+                words += 1
+                parts += _word(name, value, source)
         stop = text.find(";")
         parts += _literal(text, at, len(text) if stop < 0 else stop, slots)
-        if sets and read and len(words) + len(sets) > 1:
+        if sets and read and words + len(sets) > 1:
             raise _LeftError
-        return _made(parts, tuple(words), tuple(sets.items()))
+        return source.made(parts, sets)
 
     def _name(self, target: Any) -> str:
         """Return what an assignment is to: a word, or an R parameter without an index."""
@@ -152,79 +149,110 @@ class Compiler:
             raise _LeftError
         return name
 
-    def _word(self, name: str, value: Any, slots: Places) -> tuple[str, Valued, str]:
-        """Return what of a word stands before its number, that, and what stands behind it."""
-        if rule_of(value) != "axis_value":
-            return f" {name}=", self._value(value, slots), " "
-        way, inner = value.children
-        return f" {name}={str(way).upper()}(", self._value(inner, slots), ") "
 
-    # --- values ---
+class _Said(str):
+    """What is written as Python of a number in a plain text."""
 
-    def _value(self, node: Any, slots: Places) -> Valued:
-        """Return what gives the value of a node. Raises _LeftError."""
+    __slots__ = ()
+
+
+class _Source:
+    """Writes values of a line as Python: `n` are its numbers, `r` R parameters.
+
+    What is written has names of our own and places of numbers, and nothing else of the line.
+    """
+
+    def __init__(self, worth: Expressions, slots: Places) -> None:
+        self.worth, self.slots = worth, slots
+        self.known: dict[str, Any] = {"checked": worth.checked, "said": number_text, "float": float}
+        self.reads: set[int] = set()
+
+    def made(self, parts: Sequence[str | _Said], sets: Mapping[int, str]) -> Compiled:
+        """Return a line of which texts and numbers come in any order. Raises _LeftError."""
+        pieces, told = [""], list[str]()
+        for part in parts:
+            if isinstance(part, _Said):
+                told.append(part)
+                pieces.append("")
+            else:
+                pieces[-1] += part
+        given = [f"({number}, {value})" for number, value in sets.items()]
+        text = f"lambda n, r: ([{', '.join(told)}], [{', '.join(given)}])"
+        if text.count("(") > DEEP:
+            raise _LeftError
+        return Compiled(tuple(pieces), tuple(self.reads), eval(text, self.known))
+
+    def finite(self, node: Any) -> str:
+        """Return a value that is looked at whether it is finite. Raises _LeftError."""
+        return f"checked({self.value(node)})"
+
+    def value(self, node: Any) -> str:
+        """Return a value, which need not be finite. Raises _LeftError."""
         if isinstance(node, Token):
-            start = node.start_pos or 0
-            slot = slots.get((start, start + len(node)))
-            if slot is None or not node.type.endswith("NUMBER"):
-                raise _LeftError
-            return lambda numbers: float(numbers[slot])
+            return self._number(node)
         rule, children = rule_of(node), node.children
         if rule == "variable":
             return self._parameter(node)
         if rule == "bracketed":
-            return self._value(children[0], slots)
+            return self.value(children[0])
         if rule == "negated" and str(children[0]) in "+-":
-            inner, minus = self._value(children[1], slots), str(children[0]) == "-"
-            return lambda numbers: -inner(numbers) if minus else inner(numbers)
+            return f"({children[0]}{self.value(children[1])})"
         if rule == "function":
-            return self._function(str(children[0]).upper(), children[1].children, slots)
+            return self._function(str(children[0]).upper(), children[1].children)
         if len(children) == 3 and str(children[1]).upper() in OPERATORS:
-            return self._operated(str(children[1]).upper(), children[0], children[2], slots)
+            return self._operated(str(children[1]).upper(), children[0], children[2])
         raise _LeftError
 
-    def _parameter(self, node: Node) -> Valued:
+    def _number(self, token: Token) -> str:
+        start = token.start_pos or 0
+        slot = self.slots.get((start, start + len(token)))
+        if slot is None or not token.type.endswith("NUMBER"):
+            raise _LeftError
+        return f"float(n[{slot}])"
+
+    def _parameter(self, node: Node) -> str:
         name, *index = node.children
         if index or not PARAMETER.fullmatch(str(name).upper()):
             raise _LeftError
-        parameter, checked, number = self.worth.parameter, self.worth.checked, int(str(name)[1:])
-        return lambda _: checked(parameter(number))  # type: ignore[arg-type]
+        number = int(str(name)[1:])
+        self.reads.add(number)
+        return f"r[{number}]"
 
-    def _operated(self, sign: str, left: Any, right: Any, slots: Places) -> Valued:
-        operate, checked = self.worth.arithmetic.operators[sign], self.worth.checked
-        one, other = self._value(left, slots), self._value(right, slots)
-        return lambda numbers: checked(operate(one(numbers), other(numbers)))
+    def _operated(self, sign: str, left: Any, right: Any) -> str:
+        if sign in CARRY_ON:
+            return f"({self.value(left)} {sign} {self.value(right)})"
+        of = self._called(self.worth.arithmetic.operators[sign])
+        return f"{of}({self.finite(left)}, {self.finite(right)})"
 
-    def _function(self, name: str, given: Sequence[Any], slots: Places) -> Valued:
-        function, checked = self.worth.arithmetic.functions.get(name), self.worth.checked
+    def _function(self, name: str, given: Sequence[Any]) -> str:
+        function = self.worth.arithmetic.functions.get(name)
         whole = len(given) == COUNTS.get(name, 1) and all(slot.children for slot in given)
         if function is None or name in FUNCTIONS or not whole:
             raise _LeftError
-        values = [self._value(slot.children[0], slots) for slot in given]
-        return lambda numbers: checked(float(function(*[checked(of(numbers)) for of in values])))
+        values = [self.finite(slot.children[0]) for slot in given]
+        return f"float({self._called(function)}({', '.join(values)}))"
+
+    def _called(self, function: Callable[..., float]) -> str:
+        """Return the name by which a function is called."""
+        name = f"f{len(self.known)}"
+        self.known[name] = function
+        return name
 
 
-def _literal(text: str, start: int, end: int, slots: Places) -> Iterator[str | int]:
+def _word(name: str, value: Any, source: _Source) -> Iterator[str | _Said]:
+    """Yield what of a word stands before its number, that, and what stands behind it."""
+    if rule_of(value) != "axis_value":
+        yield from (f" {name}=", _Said(f"said({source.finite(value)})"), " ")
+        return
+    way, inner = value.children
+    yield from (f" {name}={str(way).upper()}(", _Said(f"said({source.finite(inner)})"), ") ")
+
+
+def _literal(text: str, start: int, end: int, slots: Places) -> Iterator[str | _Said]:
     """Yield a part of a line, with its numbers as places."""
     for (first, last), slot in slots.items():
         if start <= first and last <= end:
             yield text[start:first]
-            yield slot
+            yield _Said(f"n[{slot}]")
             start = last
     yield text[start:end]
-
-
-def _made(
-    parts: Sequence[str | int],
-    words: tuple[Valued, ...],
-    sets: tuple[tuple[int, Valued], ...],
-) -> Compiled:
-    """Return a line of which pieces and places come in any order."""
-    pieces, places = [""], list[int]()
-    for part in parts:
-        if isinstance(part, str):
-            pieces[-1] += part
-        else:
-            places.append(part)
-            pieces.append("")
-    return Compiled(tuple(pieces), tuple(places), words, sets)

@@ -74,19 +74,22 @@ class Computing(Deciding):
     def plain_words(self, ahead: gx.Ahead, k: int) -> gx.Computed | None:
         """Return a line in plain words, which may set R parameters; None for other lines."""
         numbers, grammar = ahead.numbers_of(k), self.grammar_of_expressions
-        form = ahead.keys[k], " ".join(numbers).encode().translate(ZEROS)
+        text = " ".join(numbers)
+        form = ahead.keys[k], text.encode().translate(ZEROS)
         key = self._keys.get(form)
         if key is None and (key := self._new_key(form, ahead.first + k)) is None:
             return None
-        fixed, bare = grammar.fixed(key), [number.lstrip("+-") for number in numbers]
+        fixed = grammar.fixed(key)
         if fixed is None:
             return None
+        signed = "-" in text or "+" in text
+        bare = [number.lstrip("+-") for number in numbers] if signed else numbers
         name = (key, *[bare[slot] for slot in fixed])
         try:
             if name not in self._compiled:
                 self._compile(name, ahead.first + k, bare)
             line = self._compiled[name]
-            return line and line.computed(bare, self._take)
+            return line and line.computed(bare, self.r, self._take)
         except (v.NoValueError, OverflowError):
             return None
 
@@ -108,14 +111,13 @@ class Computing(Deciding):
         text = self.lines[line]
         tree, spans = self.tree_of(text), self.grammar_of_expressions.spans(text)
         made = self._compiler.compiled(tree, text, spans)
-        known = made and made.known(numbers, lambda plain: self.shape(line, plain))
+        known = made and made.known(numbers, self.r, lambda plain: self.shape(line, plain))
         self._compiled[name] = known
 
     def _take(self, given: Sequence[tuple[int, Any]]) -> None:
         """Take R parameters of a line that is compiled."""
         self.r.update(given)
-        if given:
-            self.tell_of_parameters()
+        self.tell_of_parameters()
 
     def executed(self, items: Sequence[gx.Item]) -> list[str]:
         """Return the blocks of a line. Raises InputError."""

@@ -6,6 +6,7 @@ computed by the engine of all languages with the rule object of this one (`arith
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
@@ -68,7 +69,7 @@ class Expressions(v.Evaluator):
 
     def checked(self, value: float) -> float:
         """Return a number that is finite. Raises NoValueError."""
-        if value != value or value in (float("inf"), float("-inf")):
+        if not -math.inf < value < math.inf:
             raise v.NoValueError("the result is too large")
         return value
 
