@@ -35,7 +35,6 @@ SENSE = {84: 1, 74: 2}
 """The number of M3 and M4 among the modes of the spindle."""
 ROUNDED = 0.501  # of the last decimal
 PITCH_ERROR = 1.5e-4  # relative; what the rounding of F may change
-
 STILL = 1e-6  # mm; sums of steps end in other bits than what is written for them
 
 
