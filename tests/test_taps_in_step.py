@@ -12,7 +12,7 @@ from gcxform.emit.taps_in_step import TapsInStep
 from gcxform.modal.state import Reading
 from gcxform.pipeline.pipeline import Pipeline
 from gcxform.plugin.registry import default_registry
-from gcxform.toolpath.path import FeedMode, Form
+from gcxform.toolpath.path import FeedMode, Form, Toolpath
 
 WORDS = b"G21 G17 G90 G94\nG0 X0 Y0 Z5\nS300 M3\nG33.1 Z-10 K1.25\nG0 Z9\nM2\n"
 AT = Reading({"X": 0.0, "Y": 0.0, "Z": 5.0})
@@ -160,3 +160,24 @@ def test_the_proof_of_cycles_finds(what, monkeypatch):
     with pytest.raises(gx.GcxformError) as error:
         made.run(WORDS)
     assert error.value.diagnostics[0].code in ("GX601", "GX215")
+
+
+def test_each_tap_costs_the_same(monkeypatch):
+    fanuc, there = (default_registry().dialect(name) for name in ("fanuc", "linuxcnc"))
+    begins, asked, found = Toolpath.start.fget, [0], list[int]()
+
+    def start(path: Toolpath) -> np.ndarray:
+        asked[0] += 1
+        return begins(path)
+
+    monkeypatch.setattr(Toolpath, "start", property(start))
+    for count in (10, 200):
+        asked[0] = 0
+        holes = "".join(f"X{n}.\n" for n in range(1, count))
+        text = f"G21 G17 G90 G94 G54\nS300 M3\nG0 X0. Y0. Z9.\nG84 X0. Z-5. R2. F375.\n{holes}G80\n"
+        made = Pipeline(fanuc, there, (), taps="in-step").run(f"{text}M30\n".encode()).text
+        assert made.count(b"G33.1") == count
+        back = Pipeline(there, fanuc, (), taps="in-step").run(made).text
+        assert back.count(b"G84") == count
+        found.append(asked[0])
+    assert found[0] == found[1]  # each is a copy of all

@@ -45,14 +45,14 @@ class TapsAsCycles(TapsInStep):
         """Refuse a tap that no cycle goes like. Raises InputError."""
         path, line = self.task.path, int(self.task.path.block[row])
         normal = Plane(int(path.plane[row])).axes[2]
-        way = path.end[row] - path.start[row]
+        way = path.end[row] - self.start[row]
         aside = np.delete(way, normal)
-        if not way[normal] < 0 or np.abs(aside[~np.isnan(aside)]).max(initial=0.0) > 0:
-            self._refuse(line, "a tap upwards, aside, or from where that is not known", ABSOLUTE)
         frame = path.frames[int(path.frame[row])]
         if not frame.shifts_only or frame.polar:
             self._refuse(line, "a tap in coordinates that are turned or mirrored", BY_CAM)
-        if not (np.abs(path.end[row + 1] - path.start[row])[:3] <= SAME).all():
+        if not way[normal] < 0 or np.abs(aside[~np.isnan(aside)]).max(initial=0.0) > 0:
+            self._refuse(line, "a tap upwards, aside, or from where that is not known", ABSOLUTE)
+        if not (np.abs(path.end[row + 1] - self.start[row])[:3] <= SAME).all():
             self._refuse(line, "a tap that does not come back to where it begins", BY_CAM)
         if path.blocks.incremental[line]:
             self._refuse(line, "a tap by steps would be a cycle whose R is one", ABSOLUTE)

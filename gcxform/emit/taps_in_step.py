@@ -39,6 +39,7 @@ class TapsInStep:
     pace   (rows,) mm for each turn, the K of its block
     code   (rows,) the number of the code that is written, -1 for other moves
     speeds (rows,) of the spindle, turns per minute; `speed`: after the window; nan: not known
+    start  (rows, axes) where moves begin, mm;  mirrored: (live,) lines that move in a mirror image
     """
 
     def __init__(self, task: Task, speed: float) -> None:
@@ -49,6 +50,7 @@ class TapsInStep:
         self.code = np.full(len(path), -1, np.int8)
         self.speed = speed
         self.speeds = np.full(len(path), np.nan)
+        self.start, self.mirrored = path.start, mirrored_lines(task)
         self._find()
 
     def _find(self) -> None:
@@ -116,10 +118,8 @@ class TapsInStep:
     def _check_back(self, row: int, line: int, code: int) -> None:
         """Refuse a tap that comes back to another place than it begins at, or is mirrored."""
         path, source = self.task.path, self.task.manner.source
-        back = np.abs(path.end[row + 1] - path.start[row])
-        read = self.task.read.path
-        matrices = [read.frames[n].matrix for n in set(read.frame[read.block == line].tolist())]
-        if any(m is not None and np.linalg.det(np.array(m)) < 0 for m in matrices):
+        back = np.abs(path.end[row + 1] - self.start[row])
+        if self.mirrored[line]:
             self._refuse(line, "a tap in a mirror image: its hand is not certain", BY_CAM)
         if not (back[:3] <= SAME).all():
             message = f"G{code} of {source.name} comes out to another level than it begins at"
@@ -137,6 +137,15 @@ class TapsInStep:
 
     def _refuse(self, line: int, message: str, hint: str) -> NoReturn:
         raise InputError.one("GX501", message, self.task.location(line), hint)
+
+
+def mirrored_lines(task: Task) -> Flags:
+    """Return which lines (live,) of the program as read have moves in a mirror image."""
+    path, found = task.read.path, np.zeros(task.read.live, np.bool_)
+    matrices = (frame.matrix for frame in path.frames)
+    mirrors = [m is not None and bool(np.linalg.det(np.array(m)) < 0) for m in matrices]
+    found[path.block[np.array(mirrors, np.bool_)[path.frame]]] = True
+    return found
 
 
 def every_other(rows: Flags) -> Flags:

@@ -92,7 +92,7 @@ def said_in_moves(
     if plan.chord_error and path.has_splines:
         with placing(window, file):
             path = _straight(path, plan.chord_error)
-    path = _fed_in_work(plan, _homed(plan, read, path))
+    path = _tapped_by_places(plan, _fed_in_work(plan, _homed(plan, read, path)))
     if not plan.target.arc_rule.turns and len(turning := turning_on(path)):
         with placing(window, file):
             path = within_a_turn(path, turning)
@@ -127,6 +127,23 @@ def _fed_in_work(plan: Plan, path: Toolpath) -> Toolpath:
         form=np.where(moved, Form.PLAIN, path.form).astype(np.int8),
         blocks=replace(path.blocks, incremental=incremental),
     )
+
+
+def _tapped_by_places(plan: Plan, path: Toolpath) -> Toolpath:
+    """Return a path in which lines with taps are absolute, where the target has none by steps.
+
+    One that begins or ends where it is not known stays, and is refused by the target.
+    """
+    saying, translator = plan.saying, plan.target.translator
+    spelled = saying.taps_in_step and getattr(translator, "speller", None) is not None
+    tied = path.form == Form.SYNCHRONISED
+    if not (spelled or saying.taps_as_cycles) or not tied.any():
+        return path
+    unknown = path.block[np.isnan(path.end[:, :3]).any(axis=1)]
+    tapped = np.setdiff1d(path.block[tied], unknown)
+    incremental = path.blocks.incremental.copy()
+    incremental[tapped] = False
+    return path.replace(blocks=replace(path.blocks, incremental=incremental))
 
 
 def _homed(plan: Plan, read: Interpreted, path: Toolpath) -> Toolpath:

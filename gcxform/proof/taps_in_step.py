@@ -35,6 +35,7 @@ SENSE = {84: 1, 74: 2}
 """The number of M3 and M4 among the modes of the spindle."""
 ROUNDED = 0.501  # of the last decimal
 PITCH_ERROR = 1.5e-4  # relative; what the rounding of F may change
+STILL = 1e-6  # mm; sums of steps end in other bits than what is written for them
 
 
 class TapProof:
@@ -64,7 +65,8 @@ class TapProof:
         path = path.replace(events=tuple(self._without_rigid(path)))
         path = self.without_inner(path, tied)
         lines = np.isin(path.block, path.block[tied])
-        still = lines & (path.form == Form.CYCLE) & (path.end == path.start).all(axis=1)
+        stays = (np.abs(path.end - path.start) <= STILL).all(axis=1)
+        still = lines & (path.form == Form.CYCLE) & stays
         path = path.with_rows((~still).astype(np.int64))
         begins = np.append(True, path.block[1:] != path.block[:-1])
         at = np.arange(len(path))

@@ -51,6 +51,13 @@ MUTATIONS = (
     _proved("any hand is one", "other = back.modes.spindle[line] != sense", "other = sense < 0"),
     _proved("any tap may wait", "if event.within and event.what ==", "if False and event.what =="),
     _proved("speeds are those of the end", "if event.row > at:", "if False:"),
+    _in_step(
+        "taps by steps stay so",
+        "incremental[tapped] = False",
+        "incremental[tapped[:0]] = False",
+        "by-steps-for-siemens",
+        "gcxform/pipeline/translated_moves.py",
+    ),
     _in_step("the pitch is S by F", "return feed / speed", "return speed / feed", "for-linuxcnc"),
     _in_step(
         "a feed per turn is divided by the speed",

@@ -34,6 +34,8 @@ BEHIND = frozenset((0, 1, 2, 30))
 QUIET = frozenset(("M1", "M7", "M8", "M9"))
 """M functions that leave the spindle as it is."""
 TAP = "G33.1"
+METRIC = 'put the pass "metric" before'
+PLACES = "write the tap in G90 and G17"
 PLANES = {"G17": "XY", "G18": "ZX", "G19": "YZ"}
 TILTED = frozenset(("G68.2", "G53.1"))
 CENTRES = dict(zip("XYZ", "IJK", strict=True))
@@ -231,9 +233,9 @@ class Lines(CallsKept):
     def _tap(self, ends: dict[str, Decimal], pitch: Decimal) -> Iterator[str]:
         """Yield cycle 207 from where the tool stands. Raises UnspeakableError."""
         if self.inch:
-            raise gx.UnspeakableError("a tap of a program in inches is not read")
+            raise gx.UnspeakableError("a tap of a program in inches is not read", METRIC)
         if {*ends} != {"Z"} or self.steps or self.plane != "G17" or self.waits != " R0":
-            raise gx.UnspeakableError("a tap by steps, or along another axis than Z in G17")
+            raise gx.UnspeakableError("a tap by steps, or along another axis than Z in G17", PLACES)
         if "Z" not in self.place or not ends["Z"] < self.place["Z"] or not pitch > 0:
             raise gx.UnspeakableError("a tap from where it is not known, upwards, or without pitch")
         if not self.spindle:

@@ -40,6 +40,8 @@ SAME = frozenset(
 )
 LETTERS = {"R": "CR=", **{letter: letter for letter in "XYZABCIJKFSN"}}
 TAP = f"G{CODE}"
+BY_PLACES = "write the tap in G90 and G17, in a block of its own"
+PER_MINUTE = "write G94 before the tap, with F as its pitch times S"
 MOTIONS = frozenset(("G0", "G1", "G2", "G3", TAP))
 STEPPED = (
     "steps of Z behind another tool length: a setting decides whether they make up for it (SD42442)"
@@ -78,7 +80,7 @@ class Lines(gx.Speller):
         self.height: Decimal | None = None
         self.spindle = self.speed = self.motion = self.feed = ""
         self.owed = self.shifted = False
-        self.plane = "G17"
+        self.plane, self.feed_mode = "G17", "G94"
 
     def lose(self) -> None:
         """Forget where the axes stand, and whether the spindle turns."""
@@ -166,6 +168,8 @@ class Lines(gx.Speller):
                 self.plane = name
             elif name in ("G90", "G91"):
                 self.steps = name == "G91"
+            elif name in ("G93", "G94", "G95"):
+                self.feed_mode = name
         self.spindle = turned([name for name in names if name[0] == "M"], self.spindle)
         self.speed = text_of(Decimal(values["S"])) if "S" in values else self.speed
         self.feed = text_of(Decimal(values["F"])) if "F" in values else self.feed
@@ -179,7 +183,11 @@ class Lines(gx.Speller):
         """Yield the lines of a tap from where the tool stands. Raises UnspeakableError."""
         others = {name for name in names if name[0] in "GM"} - {TAP, "G90"}
         if values.keys() - {*"NGZK"} or others or self.steps or self.plane != "G17":
-            raise gx.UnspeakableError("a tap by steps, beside other words, or out of G17")
+            raise gx.UnspeakableError(
+                "a tap by steps, beside other words, or out of G17", BY_PLACES
+            )
+        if self.feed_mode in ("G93", "G95"):
+            raise gx.UnspeakableError(f"a tap by G331 in {self.feed_mode}", PER_MINUTE)
         bottom, pitch = Decimal(values.get("Z", "0")), Decimal(values.get("K", "0"))
         if self.height is None or "Z" not in values or not bottom < self.height or not pitch > 0:
             raise gx.UnspeakableError("a tap from where it is not known, upwards, or without pitch")
