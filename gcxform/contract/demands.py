@@ -32,6 +32,10 @@ class Demands:
     """It has to see every cut as a whole: a window then ends where a rapid follows one."""
     reads_tip_codes: bool = False
     """It does what codes for following the tip ask for, so they are read as plain tool lengths."""
+    keeps_tip_codes: bool = False
+    """It corrects tips where the control follows them: such codes are read, and stay."""
+    turns_tips: bool = False
+    """It does so behind codes of a tool length (G43.4) as well, where axes may turn then."""
     reads_vectors: bool = False
     """It makes angles of the tool vectors that such codes announce."""
     letters: str = ""
@@ -47,6 +51,8 @@ class Demands:
     deviates: Mapping[str, str] = field(default_factory=dict)
     """By "deviation" (mm) and "angle" (degrees) the name of what it measures of the same kind: what
     its promise bounds, and what no comparison of what it wrote with its own path can show."""
+    counts: frozenset[str] = frozenset()
+    """The names of what it measures that are counts: told is the sum of the run."""
     spares: Callable[[Toolpath], Flags] | None = None
     """Says which rapids (n,) of a path are left to go where the machine takes them. Of these the
     proof asks that the control is told what the program says, and the certificate says how far off

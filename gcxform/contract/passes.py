@@ -40,7 +40,8 @@ class PassContext:
     """What surrounds a pass: the dialects it works between, the output's numbers, the machine.
 
     `decimals` are those of addresses that differ from the number format; `said` is what the user
-    says of codes of the source.
+    says of codes of the source. `keeps_tips`: codes that follow the tip are read, and stay, so that
+    rows which follow have positions of the tip.
     """
 
     source: type[Dialect]
@@ -49,6 +50,7 @@ class PassContext:
     machine: Machine | None = None
     decimals: Mapping[str, int] = field(default_factory=dict)
     said: Saying | None = None
+    keeps_tips: bool = False
 
     @property
     def saying(self) -> Saying:
@@ -105,7 +107,7 @@ class Pass:
     ) -> Mapping[str, float]:
         """Return what the certificate shall say of a window besides the deviation, by its name.
 
-        Of each name the largest value of the run is told.
+        Of each name the largest value of the run is told, or the sum (`Demands.counts`).
         """
         return {}
 

@@ -11,20 +11,28 @@ stays as it is without them. What reads the output does not know them.
 
 `G43.5 H1` says in addition that I, J and K of lines are the tool axis. It is read as `G43 H1` too,
 in a dialect in which that means so, up to the next G49 (`gcxform/modal/moves/tool_vectors.py`).
+
+A pass that corrects tips, and leaves it to the control to follow them, reads the M codes as well,
+and they stay in the output (`with_kept`): its reader knows them too.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cache
+from typing import Any, cast
 
+from gcxform.contract.demands import Demands
 from gcxform.diagnostics import InputError, Location
 from gcxform.dialect.codes import FOLLOWING, MCode, barrier
 from gcxform.dialect.dialect import Dialect
 from gcxform.machine.machine import SWITCHES
 from gcxform.syntax.source import Source, lines_in
 
+KEPT = {"tip-on": "tip-kept-on", "tip-off": "tip-kept-off"}
+"""The acts of M codes that follow the tip and leave it, where they are read and stay."""
 OTHERWISE = "it is another tool length in a program with tool vectors"
 COMMENT = rb"\([^()\r\n]*\)"
 
@@ -101,6 +109,45 @@ def with_refusal(dialect: type[Dialect], control: Mapping[str, str | float]) -> 
     if not codes:
         return dialect
     return type(dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}})
+
+
+def read_as(
+    dialect: type[Dialect], control: Mapping[str, str | float], asked: Iterable[Demands]
+) -> type[Dialect]:
+    """Return the dialect in which programs are read for passes that ask for this."""
+    reads = any(each.reads_tip_codes for each in asked)
+    return (with_switches if reads else with_refusal)(dialect, control)
+
+
+def read_plainly(
+    source: Source, dialect: type[Dialect], read: type[Dialect], asked: Collection[Demands]
+) -> tuple[Source, type[Dialect]]:
+    """Return a program without codes that such passes do instead, and the dialect it is read in."""
+    if any(each.reads_vectors for each in asked):
+        plain = without_tip_codes(source, dialect.tip_rule.vector_codes)
+        return plain, read if plain is source else with_vectors(read)
+    if any(each.reads_tip_codes for each in asked):
+        source = without_tip_codes(source, dialect.tip_rule.codes)
+    return source, read
+
+
+def with_kept(dialect: type[Dialect], control: Mapping[str, str | float]) -> type[Dialect]:
+    """Return the dialect in which such M codes are read, and stay; itself without them."""
+    acts = switches_of(dialect, control)
+    kept = tuple((int(code[1:]), KEPT[act]) for code, act in acts.items())
+    known = dialect.m_codes
+    if all(number in known and known[number].act == act for number, act in kept):
+        return dialect
+    return _keeping(cast(Any, dialect), kept)
+
+
+@cache
+def _keeping(dialect: Any, kept: tuple[tuple[int, str], ...]) -> type[Dialect]:
+    codes = {number: MCode("tip", act=act) for number, act in kept}
+    made: type[Dialect] = type(
+        dialect.__name__, (dialect,), {"m_codes": {**dialect.m_codes, **codes}}
+    )
+    return made
 
 
 def with_vectors(dialect: type[Dialect]) -> type[Dialect]:

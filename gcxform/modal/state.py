@@ -84,6 +84,8 @@ class Reading:
     asides        whether it is to be written whole in the language that it is in: what only says
                   how fast, or how smooth, goes along, in comments that nobody else can write
     compensates   whether positions become those that make up for the errors of a machine
+    keeps_tips    whether axes may turn behind a length with which the control follows the tip, as
+                  tips become other tips
     modes_count   whether what is written depends on units, plane and feed mode: not where words of
                   the same coordinates are said in another way
     unit_open     whether that depends on a unit in which the program begins and nobody knows:
@@ -116,6 +118,7 @@ class Reading:
     stays: bool = False
     asides: bool = False
     compensates: bool = False
+    keeps_tips: bool = False
     modes_count: bool = False
     unit_open: str = ""
     subprograms: tuple[Path, ...] = ()

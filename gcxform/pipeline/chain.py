@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from gcxform.catalogue.remedies import either, put_before
+from gcxform.contract.demands import Demands
 from gcxform.contract.passes import Pass
 from gcxform.diagnostics import UsageError
 from gcxform.plugin.registry import default_registry
@@ -48,6 +50,20 @@ def compensates(passes: Sequence[Pass]) -> bool:
 def spared_by(passes: Sequence[Pass]) -> tuple[Callable[[Toolpath], Flags], ...]:
     """Return how passes say which rapids they leave to the machine."""
     return tuple(step.demands.spares for step in passes if step.demands.spares is not None)
+
+
+def keeps_tip_codes(steps: Sequence[object]) -> bool:
+    """Whether codes that follow the tip are read and stay: a step does so, and no other minds.
+
+    Others turn no positions into those of something else, and resolve no contour or feed.
+    """
+    asked = [step.demands for step in steps if isinstance(step, Pass)]
+    others = [each for each in asked if not each.keeps_tip_codes]
+    bare = [replace(each, keeps_rows=True, promise_angle=0.0) for each in others]
+    plain = all(each == Demands() for each in bare)
+    moved = {TIP_POSITIONS, AXIS_POSITIONS}
+    turned = any(moved & (s.ensures | s.clears) for s in steps if isinstance(s, Pass))
+    return len(others) < len(asked) and plain and not turned
 
 
 def expands_cycles(passes: Sequence[Pass]) -> bool:

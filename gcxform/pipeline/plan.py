@@ -28,21 +28,29 @@ import numpy as np
 
 from gcxform.config import arguments
 from gcxform.config.to_fill_in import Open
+from gcxform.contract import tip_codes
+from gcxform.contract.demands import Demands
 from gcxform.contract.inert_codes import with_inert
 from gcxform.contract.options import taken
 from gcxform.contract.own_codes import with_own_codes
 from gcxform.contract.passes import Pass, PassContext, TextPass, resolved
 from gcxform.contract.tilted_planes import says_the_same, treatment, with_planes
-from gcxform.contract.tip_codes import with_refusal, with_switches, with_vectors, without_tip_codes
 from gcxform.diagnostics import Diagnostic, UsageError
 from gcxform.dialect.code_translation import Saying
 from gcxform.dialect.dialect import LINEAR, MOST_DECIMALS, ROTARY, Dialect, NumberFormat
 from gcxform.emit.expressible import foreign_cycles
 from gcxform.emit.manner import Manner
 from gcxform.machine.machine import Machine
-from gcxform.modal.meaning.tables import GROUPS
 from gcxform.modal.state import Reading
-from gcxform.pipeline.chain import check_chain, compensates, expands_cycles, facts_after, spared_by
+from gcxform.pipeline.chain import (
+    check_chain,
+    compensates,
+    expands_cycles,
+    facts_after,
+    keeps_tip_codes,
+    spared_by,
+)
+from gcxform.pipeline.entry_modes import check_entry
 from gcxform.pipeline.own_language import check_target, target_of, writes_back
 from gcxform.pipeline.reasons import Told
 from gcxform.plugin.registry import dialect_of
@@ -56,7 +64,6 @@ from gcxform.values import dataclass
 
 ARC_ROUNDING = 2.0  # of the last decimal: what rounding ends and centre can add along an arc
 CENTRE_ROUNDING = 0.003  # mm: what rounding moves a centre by depends on the contour's corners
-ENTERED = (*GROUPS, "retract")
 STRUCTURES = ("keep", "written-out")
 WORDS = ("changed", "programmed", "all")
 
@@ -118,7 +125,7 @@ class Plan:
             object.__setattr__(self, "target", target)
             self.__dict__.pop("saying", None)  # of the target of before
         check_target(self)
-        self._check_entry()
+        check_entry(self.reading.entry.modes, self.source)
         self.saying.check()
         check_chain(self.path_passes)
         for step in self.path_passes:
@@ -142,9 +149,11 @@ class Plan:
         source, target = (
             with_planes(dialect_of(each), "refused") for each in (self.source, self.target)
         )
-        same, source = source is target, with_own_codes(source, control)
+        same, steps = source is target, tuple(taken(step) for step in steps)
+        if source.name == target.name and keeps_tip_codes(steps):
+            source, target = (tip_codes.with_kept(each, control) for each in (source, target))
+        source = with_own_codes(source, control)
         target = source if same else with_inert(target, self.inert)
-        steps = tuple(taken(step) for step in steps)
         same = source is target
         planes = treatment(same, [step for step in steps if isinstance(step, Pass)], machine)
         return {
@@ -162,17 +171,6 @@ class Plan:
                 for letter, count in arguments.table("decimals", self.decimals).items()
             },
         }
-
-    def _check_entry(self) -> None:
-        """Refuse modes of `[entry]` that are none of the dialect, or two of one group."""
-        groups: set[str] = set()
-        for mode in self.reading.entry.modes:
-            code = self.source.codes.get(mode)
-            known = code is not None and (code.group in ENTERED or mode == "G49")
-            if code is None or not known or code.group in groups:
-                message = f"modes: {mode!r} is no mode of {self.source.name}, or one of two"
-                raise UsageError.one("GX707", message, hint='modes = "G90 G21 G94" in [entry]')
-            groups.add(code.group)
 
     def _check_budget(self) -> None:
         """Refuse a budget that the steps cannot keep, and steps without bound or budget."""
@@ -234,22 +232,25 @@ class Plan:
         manner = replace(manner, compensates=compensating, open_place=open_place)
         return replace(manner, promised=promised, spares=spared_by(self.path_passes))
 
+    @cached_property
+    def keeps_tips(self) -> bool:
+        """Whether codes that follow the tip are read, and stay."""
+        return self.source.name == self.target.name and keeps_tip_codes(self.path_passes)
+
     @property
     def read_as(self) -> type[Dialect]:
         """The dialect in which programs are read: with what a pass does instead of the control."""
-        reads = any(step.demands.reads_tip_codes for step in self.path_passes)
-        read = with_switches if reads else with_refusal
-        return read(self.source, self.machine_reading.control)
+        if self.keeps_tips:
+            return self.source
+        return tip_codes.read_as(self.source, self.machine_reading.control, self._demands)
 
     def without_tip_codes(self, source: Source) -> tuple[Source, type[Dialect]]:
         """Return a program without what a pass does instead of the control, and its dialect."""
-        dialect = self.read_as
-        if any(step.demands.reads_vectors for step in self.path_passes):
-            plain = without_tip_codes(source, self.source.tip_rule.vector_codes)
-            return plain, dialect if plain is source else with_vectors(dialect)
-        if any(step.demands.reads_tip_codes for step in self.path_passes):
-            source = without_tip_codes(source, self.source.tip_rule.codes)
-        return source, dialect
+        return tip_codes.read_plainly(source, self.source, self.read_as, self._demands)
+
+    @property
+    def _demands(self) -> list[Demands]:
+        return [step.demands for step in self.path_passes]
 
     @cached_property
     def machine_reading(self) -> Reading:
@@ -266,7 +267,8 @@ class Plan:
         own = self.source.translator is self.target.translator and not (same or stays)
         reading = replace(reading, curves=curves, stays=stays, asides=own)
         open_ = self._open_unit(counts) if not reading.units else ""
-        reading = replace(reading, compensates=compensates(self.path_passes))
+        tips = self.keeps_tips and any(asked.turns_tips for asked in self._demands)
+        reading = replace(reading, compensates=compensates(self.path_passes), keeps_tips=tips)
         return replace(
             reading, crosses=not same, turns_plainly=folds, modes_count=counts, unit_open=open_
         )
@@ -318,6 +320,7 @@ class Plan:
             self.machine,
             self.decimals,
             self.saying,
+            self.keeps_tips,
         )
 
     @cached_property

@@ -378,7 +378,8 @@ class Run:
         found = step.measure(path, after, self.plan.context)
         check_promised(step, found)
         for what, size in found.items():
-            self.measured[what] = max(size, self.measured.get(what, size))
+            counts, before = what in step.demands.counts, self.measured.get(what, 0.0)
+            self.measured[what] = before + size if counts else max(size, before)
         for what, number in step.added(path, after, self.plan.context).items():
             self.added[what] = self.added.get(what, 0) + number
         if self.plan.told is not None:

@@ -146,6 +146,8 @@ ACTS_OF_M: Mapping[str, tuple[str, str]] = {
     "user-code": ("user", "PQ"),
     "tip-on": ("tip", ""),
     "tip-off": ("tip", ""),
+    "tip-kept-on": ("tip", ""),
+    "tip-kept-off": ("tip", ""),
 }
 """The group of M codes with an act, and the words they need."""
 

@@ -19,6 +19,8 @@ ACTS: Mapping[str, Act] = {
     "user-code": lengths.user_code,
     "tip-on": lengths.tip_on,
     "tip-off": lengths.tip_off,
+    "tip-kept-on": lengths.tip_on,
+    "tip-kept-off": lengths.tip_off,
     "length": lengths.length,
     "length-negative": lengths.length_negative,
     "length-vector": lengths.length_vector,

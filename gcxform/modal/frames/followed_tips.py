@@ -11,8 +11,10 @@ table "at that point of time" and calls the angle their "initial state" (30i, A-
 19696#5 = 1 leaves them out of the turn, p. 20): they may lie as with all rotary axes at 0, or along
 the axes of the machine. A CAM that states a point in a plane of G68.2 as well means the first. So
 the machine file has to say which, where G43.4 comes with the table turned. With `rtcp` the axes may
-turn; here they may not. For another control `offsets` makes words of the axes of these, and G43 is
-left of the code; for the same one it stays.
+turn; here they may not, but for a pass that corrects tips (`volumetric` with `tips = "turning"`):
+positions are then those of the tip on the table with all axes at 0, as they are behind M128. For
+another control `offsets` makes words of the axes of these, and G43 is left of the code; for the
+same one it stays.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from gcxform.modal.frames.planes import (
     zero_carried,
     zero_of_work,
 )
-from gcxform.modal.frames.tool_lengths import length
+from gcxform.modal.frames.tool_lengths import kept_by_length, length
 
 WORDS_OF_TIP = "tip-words"  # where they count where the code comes with axes turned
 TIP = "the tip"
@@ -53,6 +55,8 @@ def follow(state: FrameState, asked: Asked) -> FrameState:
             "matter of the control",
             f'say {WORDS_OF_TIP} = "workpiece" in [control] of the machine file, or "machine"',
         )
+    if kept_by_length(asked) and not (turned and said == "machine"):
+        return replace(state, following=True)
     if not turned or said == "machine":
         plain = TiltedPlane(None, vector_of(zero), named(chain, angles), tip=True)
         return replace(state, plane=plain)

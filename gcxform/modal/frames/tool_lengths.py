@@ -73,6 +73,10 @@ def length_negative(state: FrameState, asked: Asked) -> FrameState:
 
 def _with_length(state: FrameState, asked: Asked, sign: float) -> FrameState:
     """Return the state with a length in force, and the H that says which."""
+    by_length = kept_by_length(asked) and "follow-tip" in asked.dialect.tip_rule.planes.values()
+    if state.following and by_length and asked.code not in asked.dialect.tip_rule.planes:
+        message = f"{asked.code} while the control follows the tip is not resolved"
+        raise ActError("GX213", message, "draw the tool back, and write G49 before")
     if "H" in asked.words:
         state = _with_number(state, asked.words["H"])
     return replace(state, tip="").with_tool(*_tool_vector(state, asked, sign))
@@ -234,7 +238,13 @@ def no_length(state: FrameState, asked: Asked) -> FrameState:
         raise ActError("GX213", f"{asked.code} takes no H but H0")
     followed = state.plane is not None and state.plane.tip
     plane = None if followed else state.plane
-    return replace(state, tip="", plane=plane).with_tool(NO_TOOL, "")
+    following = False if state.following and kept_by_length(asked) else state.following
+    return replace(state, tip="", plane=plane, following=following).with_tool(NO_TOOL, "")
+
+
+def kept_by_length(asked: Asked) -> bool:
+    """Whether the code of a length follows the tip, and stays; not beside M codes that do so."""
+    return asked.reading.keeps_tips and "tip-on" not in asked.reading.control
 
 
 def vectors(state: FrameState, asked: Asked) -> FrameState:

@@ -28,7 +28,7 @@ from gcxform.modal.frames.tool_lengths import LENGTH_STEP, length_moves
 from gcxform.modal.frames.transforms import turned_by
 from gcxform.modal.line_notes import WayHome, call_of
 from gcxform.modal.lines import LENGTHS, Lines
-from gcxform.modal.meaning.meaning import LENGTHENED, ZEROING, Act
+from gcxform.modal.meaning.meaning import LENGTHENED, SWITCHED, ZEROING, Act
 from gcxform.modal.state import Modes
 from gcxform.system.arrays import Flags, Floats, Ints
 from gcxform.system.distinct import distinct, union
@@ -40,7 +40,7 @@ from gcxform.values import dataclass
 ALONG_Z = "tools whose lengths are not known have them along Z alone: there is no tool table"
 LOST_BY_TURN = frozenset({"rotate", "no-rotate", "mirror", "no-mirror", "polar", "no-polar"})
 FRAMELESS = frozenset({"change-tool", "set-tool", "user-code", "store-home"})
-UNFOLLOWED, SWITCHED = frozenset({"plane", "tip"}), frozenset({"tip-on", "tip-off"})
+UNFOLLOWED = frozenset({"plane", "tip"})
 SPATIAL = 0b111  # X, Y and Z as bits
 PLANES = tuple(Plane)
 NOTHING: dict[str, float] = {}

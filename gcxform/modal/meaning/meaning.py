@@ -64,6 +64,8 @@ ACT_ORDER = (
     "user-code",
     "tip-on",
     "tip-off",
+    "tip-kept-on",
+    "tip-kept-off",
     "diameter",
     "length",
     "length-negative",
@@ -120,6 +122,10 @@ LENGTHENED = frozenset(
     }
 )
 """What puts another tool length in force, or none."""
+SWITCHED = frozenset(
+    {"tip-on", "tip-off", "tip-kept-on", "tip-kept-off", "follow-tip", "no-length"}
+)
+"""What may let the control follow the tip, or not any more: G49 ends a length that does."""
 ZEROING = PRESETS | {"local", "preset-restore"}
 """Acts that say where coordinates, or ways home, count from."""
 TAKES_MOTION = frozenset(

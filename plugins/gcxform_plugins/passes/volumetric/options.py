@@ -63,6 +63,13 @@ class VolumetricOptions:
         Literal["refuse", "mean"],
         gx.Option("of a model with backlash: refuse it, or take the mean of both directions"),
     ] = "refuse"
+    tips: Annotated[
+        Literal["standing", "turning"],
+        gx.Option(
+            "behind G43.4, which follows the tip, axes stand still; or they may turn: then no move "
+            "to a place of the machine is taken while they are turned"
+        ),
+    ] = "standing"
     inverse: Annotated[
         bool, gx.Option("the program holds commands: write where the machine goes with them")
     ] = False

@@ -20,14 +20,19 @@ import numpy as np
 import gcxform as gx
 from gcxform.vocabulary import Flags
 from gcxform_plugins.passes.volumetric.bored import Bored
+from gcxform_plugins.passes.volumetric.followed import Followed
 from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
+from gcxform_plugins.passes.volumetric.forward.followed import FollowedCompensation
 from gcxform_plugins.passes.volumetric.forward.window import Window, left_to_machine
 from gcxform_plugins.passes.volumetric.levers import UNKNOWN, check_known, lever_of
 from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
 from gcxform_plugins.passes.volumetric.ranges import beyond
 from gcxform_plugins.passes.volumetric.undo.commands import Commands
+from gcxform_plugins.passes.volumetric.undo.followed import FollowedMachine
 from gcxform_plugins.passes.volumetric.undo.machine import Machine
+
+FOLLOWED = "moves of a tip that the control follows, axes turned"
 
 
 @dataclass(frozen=True)
@@ -95,20 +100,36 @@ class Volumetric(VolumetricOptions, gx.Pass):
 
     def apply(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return the commands for a path; for the inverse, where the machine goes with it."""
-        return Compensation(self, path, self._place(path, context)).run() if len(path) else path
+        if not len(path):
+            return path
+        followed, place = Followed.of(path, context), self._place(path, context)
+        if followed.place is None:
+            return Compensation(self, path, place).run()
+        self._check_place(followed)
+        return FollowedCompensation(self, followed, place).run()
 
     def undo(self, path: gx.Toolpath, context: gx.PassContext) -> gx.Toolpath:
         """Return where the machine goes: command plus error, cut where the error bends.
 
         For the inverse it is the commands with which the machine goes where the path says.
         """
-        undoing = Commands if self.inverse else Machine
-        return undoing(self, path, self._place(path, context)).run() if len(path) else path
+        if not len(path):
+            return path
+        followed, place = Followed.of(path, context), self._place(path, context)
+        if followed.place is not None:
+            return FollowedMachine(self, followed, place).run()
+        return (Commands if self.inverse else Machine)(self, path, place).run()
 
     @property
     def demands(self) -> gx.Demands:
-        """Some rapids are left to the machine."""
-        return gx.Demands(spares=self._spares)
+        """Some rapids are left to the machine; tips that the control follows stay tips."""
+        turns, keeps = self.tips == "turning", not self.inverse
+        return gx.Demands(
+            spares=self._spares,
+            keeps_tip_codes=keeps,
+            turns_tips=keeps and turns,
+            counts=frozenset({FOLLOWED}),
+        )
 
     def _spares(self, path: gx.Toolpath) -> Flags:
         """Return the rapids to points of the machine, to unknown places, or all if so asked."""
@@ -120,9 +141,11 @@ class Volumetric(VolumetricOptions, gx.Pass):
         """Return how far the path goes beyond the tables, and how far grounds of holes are off."""
         if not len(before):
             return {}
-        place = self._place(before, context)
+        place, followed = self._place(before, context), Followed.of(before, context)
+        before = followed.axes()
         bored = Bored.of(before)
         found = bored.figures(Window(self, before, place)) if len(bored.rows) else {}
+        found |= {FOLLOWED: float(len(followed.rows))} if len(followed.rows) else {}
         if self.outside is gx.Outside.ERROR:
             return found
         rows = np.flatnonzero(~left_to_machine(before))
@@ -155,6 +178,13 @@ class Volumetric(VolumetricOptions, gx.Pass):
         if lever is not None:
             return Place(offset, lever.ends, lever)
         return Place(offset, tip[0] if len(tip) == 1 else tip[path.frame])
+
+    def _check_place(self, followed: Followed) -> None:
+        """Refuse to follow the tip where only the origin of the tip is known."""
+        if self.part_origin is not None:
+            message = "the control follows the tip, and part-origin says nothing of the axes"
+            hint = "give a machine file with [work-offset.*] and [tool.*] instead of part-origin"
+            raise followed.path.refuse("GX314", followed.rows[:1], message, hint)
 
     def _check_head(self, path: gx.Toolpath, context: gx.PassContext) -> None:
         """Refuse angular errors where the head is turned, and only the origin of the tip known."""

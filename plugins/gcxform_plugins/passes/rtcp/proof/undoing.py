@@ -90,13 +90,14 @@ class Undoing:
         rows = rows[turning & ~self.place.off[rows]]
         rows = rows[np.isfinite((self.start + self.end)[rows, :3]).all(axis=1)]  # or it is far off
         for chain, here in self.place.chains(rows):
-            bend[rows[here]] = self._bend(chain, rows[here]) / 8.0
+            bend[rows[here]] = self.bend(chain, rows[here]) / 8.0
         return bend
 
     def _steps(self, rows: Ints) -> Floats:
         return np.radians(self.place.angles(self.end[rows]) - self.place.angles(self.start[rows]))
 
-    def _bend(self, chain: gx.Chain, rows: Ints) -> Floats:
+    def bend(self, chain: gx.Chain, rows: Ints) -> Floats:
+        """Return a bound of the second derivative of rows (n,) in which a chain turns, mm."""
         step = np.abs(self._steps(rows))
         table = step[:, : len(chain.table)].sum(axis=1)
         head = step[:, len(chain.table) :].sum(axis=1)
