@@ -183,6 +183,42 @@ def test_what_is_not_known_is_refused(tmp_path, change, code):
         made.run(text.replace(*change).encode())
 
 
+def test_what_ends_the_following_may_end_what_began_before_the_program(tmp_path):
+    """With the table turned before it, and unless the machine file says what holds at the start."""
+    chain, _ = drawn(3, "ac-trunnion")
+    machine = machine_text("ac-trunnion", chain)
+    text = (
+        "G17 G54 G90 G710 G94\nT1 M6\nG0 X0 Y0 Z100 A0 C30\nG1 X50 Y20 Z10 F500\n"
+        "TRAFOOF\nG0 Z100\nM30\n"
+    )
+    with pytest.raises(gx.InputError, match="whether the control follows the tip is not known"):
+        pipeline(tmp_path, "siemens", machine).run(text.encode())
+    said = (tmp_path / "machine.toml").read_text() + 'tip-at-start = "off"\n'
+    (tmp_path / "machine.toml").write_text(said)
+    made = gx.Pipeline.load(tmp_path / "p.toml")
+    assert b"TRAFOOF" in made.run(text.encode()).text
+
+
+def test_the_certificate_says_how_far_the_axes_go_beyond_the_table(tmp_path):
+    """Of a line whose ends are within it: (40, 40) at C0 to (48, 30) at C90, about the origin."""
+    machine = (
+        'format = 1\nkinematics = "ac-trunnion"\n[axis.X]\n[axis.Y]\n[axis.Z]\n'
+        "[axis.A]\npoint = [450.0, 0.0, 0.0]\n[axis.C]\npoint = [450.0, 0.0, 0.0]\n"
+        "[work-offset.G54]\nX = 450.0\n[tool.1]\nlength = 95.0\n"
+    )
+    made = pipeline(tmp_path, "siemens", machine)
+    text = (
+        "G17 G54 G90 G710 G94\nT1 M6\nG0 X0 Y0 Z120 A0 C0\nTRAORI\nG0 X40 Y40 Z10\n"
+        "G1 X48 Y30 C90 F900\nG0 X0 Y0 Z120 C0\nTRAFOOF\nM30\n"
+    )
+    measured = made.run(text.encode()).certificate.measured
+    s = np.linspace(0.0, 1.0, 10_001)
+    angle = np.radians(90.0 * s)
+    x = (40.0 + 8.0 * s) * np.cos(angle) + (40.0 - 10.0 * s) * np.sin(angle)
+    told = measured["X beyond the error table (extrapolate), mm"]
+    assert told == pytest.approx(x.max() - 50.0, abs=0.01)
+
+
 def test_a_wrap_leaves_the_way_open(tmp_path):
     """A table that takes the shorter way may turn the other way round."""
     chain, poses = drawn(3, "ac-trunnion")

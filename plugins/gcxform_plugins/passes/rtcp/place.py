@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -30,6 +30,15 @@ def off_zero(angles: Floats) -> Flags:
     if far.any():
         off[far] = np.mod(angles[far], TURN) != 0.0
     return off
+
+
+def check_upright(
+    path: gx.Toolpath, offset: Mapping[str, float], letters: Iterable[str], row: Ints
+) -> None:
+    """Refuse a work offset that turns axes: angles are then not those of words."""
+    if any(offset.get(letter, 0.0) for letter in letters):
+        message = f"the work offset {path.first} turns axes"
+        raise path.refuse("GX330", row, message, "take the offset with all rotary axes at 0")
 
 
 class Place:
@@ -96,10 +105,7 @@ class Place:
             hint = f"add it there: X = ... in [work-offset.{self.path.first}]"
             raise self.path.refuse("GX314", first, message, hint)
         offset = table[self.path.first]
-        if any(offset.get(letter, 0.0) for letter in self.chain.letters):
-            message = f"the work offset {self.path.first} turns axes"
-            hint = "take the offset with all rotary axes at 0"
-            raise self.path.refuse("GX330", first, message, hint)
+        check_upright(self.path, offset, self.chain.letters, first)
         return np.array([offset.get(axis, 0.0) for axis in "XYZ"])
 
     def _check_frames(self) -> None:

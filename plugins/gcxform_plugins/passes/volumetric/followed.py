@@ -19,7 +19,7 @@ import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
-from gcxform_plugins.passes.rtcp.place import TURN_BACK, Place, turned_at
+from gcxform_plugins.passes.rtcp.place import TURN_BACK, Place, check_upright, turned_at
 from gcxform_plugins.passes.rtcp.switches import Switches
 
 STILL = 1e-9  # degrees; an axis that turns by less stands still
@@ -43,11 +43,12 @@ class Followed:
     def of(cls, path: gx.Toolpath, context: gx.PassContext) -> Followed:
         """Return those of a path. Raises InputError where something about them is not known."""
         following = np.array([frame.following is True for frame in path.frames])[path.frame]
+        if context.keeps_tips:
+            _check_switches(path, context)
         if not context.keeps_tips or not following.any():
             return cls(path, context, np.empty(0, np.int64), None)
         _check_machine(path, context, following)
         _check_known(path, context, following)
-        Switches(path, context).refuse(tips_only=False)
         first, last = _angles(path, context, path.start), _angles(path, context, path.end)
         turned = turned_at(first) | turned_at(last) | ~(np.abs(last - first) < STILL).all(axis=1)
         rows = np.flatnonzero(following & turned)
@@ -154,6 +155,14 @@ class Followed:
             raise self.path.refuse(code, self.rows[where][:1], message, hint)
 
 
+def _check_switches(path: gx.Toolpath, context: gx.PassContext) -> None:
+    """Refuse turned axes where no code has said yet whether the control follows the tip."""
+    machine = context.machine
+    known = machine is not None and bool(machine.table + machine.head)
+    if known and any(frame.following is not None for frame in path.frames):
+        Switches(path, context).refuse(tips_only=False)
+
+
 def _check_machine(path: gx.Toolpath, context: gx.PassContext, following: Flags) -> None:
     """Refuse a machine of which it is not known where its rotary axes are."""
     machine = context.machine
@@ -161,6 +170,8 @@ def _check_machine(path: gx.Toolpath, context: gx.PassContext, following: Flags)
         message = "the control follows the tip, and where the rotary axes are is not known"
         hint = 'a machine file with `kinematics`, or `table` and `head`: file = "..." in [machine]'
         raise path.refuse("GX330", np.flatnonzero(following)[:1], message, hint)
+    offset = machine.work_offsets.get(path.first, {})
+    check_upright(path, offset, machine.table + machine.head, np.flatnonzero(following)[:1])
 
 
 def _check_known(path: gx.Toolpath, context: gx.PassContext, following: Flags) -> None:

@@ -20,6 +20,13 @@ def check_inside(
     `offset` (n or 1, 3) is table position minus program position.
     """
     points, rows = _points(path, offset, rows)
+    check_points(step, path, points, rows, margin)
+
+
+def check_points(
+    step: VolumetricOptions, path: gx.Toolpath, points: Floats, rows: Ints, margin: float = 0.0
+) -> None:
+    """Refuse points (n, 3) of rows (n,), in the table, as `check_inside` does."""
     beyond = beyond_tables(step, points, margin)
     if beyond.any():
         first = int(np.argmax(beyond))
@@ -36,6 +43,21 @@ def beyond_tables(step: VolumetricOptions, points: Floats, margin: float = 0.0) 
     return found
 
 
+def leaves(step: VolumetricOptions, start: Floats, end: Floats, near: Floats) -> Flags:
+    """Return which ways (n,) may go beyond the tables, as far as they are near to a box of ends."""
+    low, high = np.minimum(start, end) - near[:, None], np.maximum(start, end) + near[:, None]
+    ranges = np.array([step.model.model.range_of(axis) for axis in range(3)])
+    return np.asarray(((low < ranges[:, 0]) | (high > ranges[:, 1])).any(axis=1))
+
+
+def crosses(step: VolumetricOptions, start: Floats, end: Floats, near: Floats) -> Flags:
+    """Return which ways (n,) may cross a border of the tables, as far as they are near as well."""
+    low, high = np.minimum(start, end) - near[:, None], np.maximum(start, end) + near[:, None]
+    ranges = [step.model.model.range_of(axis) for axis in range(3)]
+    borders = np.array(ranges).T  # (2, 3)
+    return np.asarray(((low < borders[:, None]) & (high > borders[:, None])).any(axis=(0, 2)))
+
+
 def _allowed(step: VolumetricOptions) -> list[tuple[float, float]]:
     """Return the lowest and the highest position of each axis."""
     cells = _cells(step)
@@ -43,13 +65,13 @@ def _allowed(step: VolumetricOptions) -> list[tuple[float, float]]:
 
 
 def beyond(
-    step: VolumetricOptions, path: gx.Toolpath, offset: Floats, rows: Ints
+    step: VolumetricOptions, path: gx.Toolpath, offset: Floats, rows: Ints, more: Floats
 ) -> dict[str, float]:
     """Return by how much (mm) rows go beyond the tables at most, by what the certificate calls it.
 
-    `offset` is as in `check_inside`.
+    `offset` is as in `check_inside`; `more` (n, 3) are points in the table besides.
     """
-    points, _ = _points(path, offset, rows)
+    points = np.vstack([_points(path, offset, rows)[0], more])
     found = {}
     for axis, letter in enumerate("XYZ"):
         low, high = step.model.model.range_of(axis)

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 import gcxform as gx
-from gcxform.vocabulary import Flags
+from gcxform.vocabulary import Flags, Floats
 from gcxform_plugins.passes.volumetric.bored import Bored
 from gcxform_plugins.passes.volumetric.followed import Followed
 from gcxform_plugins.passes.volumetric.forward.compensation import Compensation
@@ -27,10 +27,11 @@ from gcxform_plugins.passes.volumetric.forward.window import Window, left_to_mac
 from gcxform_plugins.passes.volumetric.levers import UNKNOWN, check_known, lever_of
 from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
-from gcxform_plugins.passes.volumetric.ranges import beyond
+from gcxform_plugins.passes.volumetric.ranges import beyond, leaves
 from gcxform_plugins.passes.volumetric.undo.commands import Commands
 from gcxform_plugins.passes.volumetric.undo.followed import FollowedMachine
 from gcxform_plugins.passes.volumetric.undo.machine import Machine
+from gcxform_plugins.passes.volumetric.ways import aside_of, ways_of
 
 FOLLOWED = "moves of a tip that the control follows, axes turned"
 
@@ -149,7 +150,18 @@ class Volumetric(VolumetricOptions, gx.Pass):
         if self.outside is gx.Outside.ERROR:
             return found
         rows = np.flatnonzero(~left_to_machine(before))
-        return found | beyond(self, before, place.offset, rows)
+        return found | beyond(self, before, place.offset, rows, self._on_ways(followed, place))
+
+    def _on_ways(self, followed: Followed, place: Place) -> Floats:
+        """Return points (n, 3) in the table of lines that axes turn along, near its borders."""
+        if followed.place is None:
+            return np.empty((0, 3))
+        which = np.flatnonzero(followed.turning)
+        rows, path = followed.rows[which], followed.axes()
+        start, end = (side[rows, :3] + place.offset_of(rows) for side in (path.start, path.end))
+        near = leaves(self, start, end, aside_of(followed, which))
+        points, rows = ways_of(followed, which[near])
+        return points + place.offset_of(rows)
 
     def _place(self, path: gx.Toolpath, context: gx.PassContext) -> Place:
         """Return where the rows of a path are in the machine."""

@@ -21,16 +21,19 @@ pieces are rounded when they are written: the tip stays where it is, as the cont
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 import gcxform as gx
 from gcxform.vocabulary import Flags, Floats, Ints
-from gcxform_plugins.passes.shared.tip_bound import leaving
 from gcxform_plugins.passes.volumetric.followed import Followed
 from gcxform_plugins.passes.volumetric.forward.compensation import PACE, SAME, Compensation
 from gcxform_plugins.passes.volumetric.forward.window import PROOF, PROOF_SHARE
 from gcxform_plugins.passes.volumetric.options import VolumetricOptions
 from gcxform_plugins.passes.volumetric.place import Place
+from gcxform_plugins.passes.volumetric.ranges import check_points, crosses, leaves
+from gcxform_plugins.passes.volumetric.ways import WAYPOINTS, aside_of, ways_of
 
 MOST = 100_000  # pieces of one block
 FOLLOWED = 1e-5  # mm; what the proof may add besides, for tips that it does not follow
@@ -97,7 +100,8 @@ class FollowedCompensation(Compensation):
         start, end = self.start[rows], self.end[rows]
         path = self.followed.path
         first, last = (place.angles(each[rows]) for each in (path.start, path.end))
-        aside = self._aside(which, (first, last))
+        aside = aside_of(self.followed, which)
+        self._check_ways(which, aside)
         turn = np.abs(np.radians(last - first))[:, : len(place.chain.table)].sum(axis=1)
         way = np.abs(end - start) + 4.0 * aside[:, None]
         fast = np.sqrt((way**2).sum(axis=1))
@@ -109,17 +113,6 @@ class FollowedCompensation(Compensation):
         large = self._largest(rows) + steep + head
         bent += turn**2 * large + 2.0 * turn * (steep + head) + 8.0 * self.lipschitz * aside
         return np.where(self._meets(start, end, aside), (steep + head) / 2.0, 0.0), bent / 8.0
-
-    def _aside(self, which: Ints, angles: tuple[Floats, Floats]) -> Floats:
-        """Return how far (n,) mm the axes leave the chord of their way, at most."""
-        place, path = self.followed.place, self.followed.path
-        assert place is not None
-        aside = np.zeros(len(which))
-        for chain, here in place.chains(which):
-            rows = self.followed.rows[which[here]]
-            tips = [place.on_workpiece(side[rows, :3], chain) for side in (path.start, path.end)]
-            aside[here] = leaving(chain, (tips[0], tips[1]), (angles[0][here], angles[1][here]))
-        return aside
 
     def _largest(self, rows: Ints) -> Floats:
         """Return the error (n,) mm at the ends of rows, the larger one."""
@@ -139,6 +132,25 @@ class FollowedCompensation(Compensation):
         return meets
 
     # --- refusals ---
+
+    def _check_ways(self, which: Ints, aside: Floats) -> None:
+        """Refuse lines along which the axes leave the table, between ends that are within it."""
+        rows, near = self.followed.rows[which], aside + self.step.max_correction
+        near_border = leaves(self.step, self.start[rows], self.end[rows], near)
+        which, aside = which[near_border], aside[near_border]
+        if not len(which):
+            return
+        points, rows = ways_of(self.followed, which)
+        points = points + self.offset_of(rows)
+        check_points(self.step, self.path, points, rows)
+        if self.step.outside is not gx.Outside.ZERO:
+            return
+        ends = points.reshape(len(which), WAYPOINTS + 1, 3)
+        near = aside / WAYPOINTS**2 + self.step.max_correction
+        over = [crosses(self.step, a, b, near) for a, b in pairwise(np.moveaxis(ends, 1, 0))]
+        jumps = np.any(over, axis=0)
+        if jumps.any():
+            raise self.refuse_jump(self.followed.rows[which[jumps]][:1])
 
     def _check_lengths(self, rows: Ints, count: Ints) -> None:
         """Refuse pieces that are shorter than is allowed."""
