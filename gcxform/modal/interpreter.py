@@ -22,13 +22,14 @@ from gcxform.modal.expressions.assignments import compute
 from gcxform.modal.expressions.unknown import note_prints
 from gcxform.modal.expressions.value import given_to
 from gcxform.modal.frame_state import FrameState
+from gcxform.modal.frames.unsaid_tips import refuse_unsaid
 from gcxform.modal.line_notes import Assignments, Unknown, WayHome
 from gcxform.modal.lines import Lines
 from gcxform.modal.meaning.tables import GROUPS, MANY_WORK, NUMBER, NURBS_END, SPLINES, MeaningTable
 from gcxform.modal.moves.kept_calls import refuse_lost_modes
 from gcxform.modal.moves.moves import Moves
 from gcxform.modal.moves.open_units import refuse_open_units
-from gcxform.modal.state import CYCLE_OFF, SPEED, UNKNOWN_SPINDLE, Modes, Reading, State
+from gcxform.modal.state import CYCLE_OFF, SPEED, TURNED, UNKNOWN_SPINDLE, Modes, Reading, State
 from gcxform.syntax.scan import Window
 from gcxform.syntax.undecided import DECIDED
 from gcxform.system.arrays import Flags, Floats, Ints
@@ -136,7 +137,8 @@ class Interpreter:
         spindle = 0 if self.dialect.program_rule.spindle_stands else UNKNOWN_SPINDLE
         state.memory = {"cycle": CYCLE_OFF, "retract": retract, "spindle": spindle, "behind": 0}
         state.memory |= {"tool-length": NUMBER["G49"], "extrusion": 0, "extruded": 0}
-        state.memory |= {"centres": 0, SPEED: 0, "unit-open": int(self.reading.unit_open != "")}
+        state.memory |= {SPEED: 0, TURNED: 0}
+        state.memory |= {"centres": 0, "unit-open": int(self.reading.unit_open != "")}
         return state
 
     def _given(self) -> dict[Key, float]:
@@ -161,6 +163,7 @@ class Interpreter:
         path = moves.path()
         refuse_limits(lines, modes, path.events)
         lines.findings.raise_if_any()
+        refuse_unsaid(lines, before, path)
         self._carry(lines, modes)
         return Interpreted(
             path,

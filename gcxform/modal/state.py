@@ -28,6 +28,7 @@ TOOLS = 99_999_999  # a T has at most eight digits on any control
 CYCLE_OFF = 80
 UNKNOWN_SPINDLE = 3
 SPEED = "speed"  # whether an S that is not 0 is in force, in `State.memory`
+TURNED = "turned"  # the first line with axes turned while nobody has said whose words are
 
 
 @dataclass(frozen=True, slots=True)

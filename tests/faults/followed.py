@@ -6,6 +6,7 @@ from faults.mutation import CORPUS, Mutation
 
 PASS = "plugins/gcxform_plugins/passes/volumetric"
 FOLLOWED, FORWARD, UNDO = (f"{PASS}/{at}followed.py" for at in ("", "forward/", "undo/"))
+UNSAID = "gcxform/modal/frames/unsaid_tips.py"
 TESTS = "tests/test_volumetric_followed.py"
 WALKED = f"{TESTS}::test_the_tip_stays_on_the_lines_of_the_program"
 REFUSED = f"{TESTS}::test_what_is_not_known_is_refused"
@@ -97,10 +98,17 @@ MUTATIONS = (
     ),
     Mutation(
         "followed: before the first code axes are taken for not followed",
-        FOLLOWED,
-        "if known and any(frame.following is not None for frame in path.frames):",
-        "if known and any(frame.following is True for frame in path.frames):",
-        f"{TESTS}::test_what_ends_the_following_may_end_what_began_before_the_program",
+        UNSAID,
+        "if memory[TURNED] and lines.state.frames.following is not None:",
+        "if memory[TURNED] and lines.state.frames.following:",
+        "tests/test_corpus.py::test_windows_make_no_difference[volumetric/tip-followed-unsaid]",
+    ),
+    Mutation(
+        "followed: axes turned in a window before are forgotten",
+        UNSAID,
+        "if not memory[TURNED] and len(path):",
+        "if len(path):",
+        "tests/test_corpus.py::test_windows_make_no_difference[volumetric/tip-followed-unsaid]",
     ),
     Mutation(
         "followed: axes may leave the table on their way",
