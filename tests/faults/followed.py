@@ -111,6 +111,13 @@ MUTATIONS = (
         "tests/test_corpus.py::test_windows_make_no_difference[volumetric/tip-followed-unsaid]",
     ),
     Mutation(
+        "followed: a switch may stand beside a move",
+        FOLLOWED,
+        "Switches(path, context).refuse_company()",
+        "pass",
+        f"{CORPUS}[volumetric/tip-followed-beside]",
+    ),
+    Mutation(
         "followed: axes may leave the table on their way",
         FORWARD,
         "check_points(self.step, self.path, points, rows)",

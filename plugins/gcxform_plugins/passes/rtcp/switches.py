@@ -65,12 +65,15 @@ class Switches:
         """
         if not self.codes:
             return
-        self._refuse_company()
+        self.refuse_company()
         for line, message, hint in self._wrong(tips_only):
             raise gx.InputError.one("GX330", message, gx.Location("", line + 1), hint)
 
-    def _refuse_company(self) -> None:
-        """Refuse codes beside a move, or one another: which acts first is not known."""
+    def refuse_company(self) -> None:
+        """Refuse codes beside a move, or one another: which acts first is not known.
+
+        Raises InputError.
+        """
         lines = np.array([event.line for event in self.path.events if event.what in self.codes])
         twice = lines[1:][lines[1:] == lines[:-1]]
         company = np.append(twice, lines[np.isin(lines, self.path.source)])

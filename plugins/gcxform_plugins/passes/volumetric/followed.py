@@ -156,11 +156,14 @@ class Followed:
 
 
 def _check_switches(path: gx.Toolpath, context: gx.PassContext) -> None:
-    """Refuse turned axes where no code has said yet whether the control follows the tip."""
+    """Refuse codes that follow the tip, or leave it, beside moves.
+
+    Axes turned before the first of them are refused by who reads the program.
+    """
     machine = context.machine
     known = machine is not None and bool(machine.table + machine.head)
     if known and any(frame.following is not None for frame in path.frames):
-        Switches(path, context).refuse(tips_only=False)
+        Switches(path, context).refuse_company()
 
 
 def _check_machine(path: gx.Toolpath, context: gx.PassContext, following: Flags) -> None:
